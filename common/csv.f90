@@ -9,7 +9,7 @@ module csv
    implicit none (type, external)
    private
    public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, hand_over, flush_csv, close_csv
-   public :: is_open, columns_of, NUMBERS
+   public :: is_open, columns_of, cells_of, quoted, NUMBERS
 
    character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< Format of a row of numbers.
    integer, parameter :: CELL = 25                               !< Characters of a number in such a row.
@@ -51,13 +51,63 @@ contains
       end if
    end subroutine open_csv
 
-   !> Number of columns that the first line of a table names.
+   !> Number of columns that the first line of a table names; a comma in quotes ends none.
    pure integer function columns_of(head)
       character(*), intent(in) :: head
+      logical :: inside
       integer :: i
 
-      columns_of = 1 + count([(head(i:i) == ',', i=1, len(head))])
+      columns_of = 1
+      inside = .false.
+      do i = 1, len(head)
+         if (head(i:i) == '"') inside = .not. inside
+         if (head(i:i) == ',' .and. .not. inside) columns_of = columns_of + 1
+      end do
    end function columns_of
+
+   !> The cells of a line, without quotes.
+   pure subroutine cells_of(line, cells)
+      character(*), intent(in) :: line
+      character(*), allocatable, intent(out) :: cells(:)   !< (columns_of)
+      logical :: inside
+      integer :: i, k, n
+
+      allocate (cells(columns_of(line)))
+      cells = ''
+      inside = .false.
+      k = 1
+      n = 0
+      do i = 1, len(line)
+         if (line(i:i) == '"') then
+            inside = .not. inside
+            ! Of two in a row the second one opens again: a quote of the text.
+            if (.not. inside .or. i == 1) cycle
+            if (line(i - 1:i - 1) /= '"') cycle
+         else if (line(i:i) == ',' .and. .not. inside) then
+            k = k + 1
+            n = 0
+            cycle
+         end if
+         n = n + 1
+         if (n <= len(cells)) cells(k)(n:n) = line(i:i)
+      end do
+   end subroutine cells_of
+
+   !> A text as a cell: in quotes where it has a comma or quotes, which are doubled.
+   pure function quoted(text) result(cell)
+      character(*), intent(in) :: text
+      character(:), allocatable :: cell
+      integer :: i
+
+      cell = text
+      if (scan(text, ',"') == 0) return
+      cell = '"'
+      do i = 1, len(text)
+         cell = cell//text(i:i)
+         if (text(i:i) == '"') cell = cell//'"'
+      end do
+      cell = cell//'"'
+   end function quoted
 
    !> Whether the file of a table is open.
    pure logical function is_open(table)

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Reads files of namelist groups: `&name`, then `key = value` as often as needed, then `/`.
+!> Reads files of namelist groups: `&name`, then `key = value` as often as needed, then `/`. A text stands between
+!> quotes of either kind; inside, the same quote is written twice.
 !> A plain reader of its own instead of Fortran's namelist input, because the names of materials come from the
 !> library's registry and because every refusal has to say the file, the line and the nearest name.
 module namelists
@@ -129,11 +130,11 @@ contains
             call open_entry(file, line, groups, inside, pending, fault)
             at = at + 1
          case ('''', '"')
-            last = at + index(text(at + 1:), text(at:at))
-            if (last == at) then
+            last = closing_quote(text, at)
+            if (last > len(text)) then
                call raise(fault, EXIT_INPUT, at_line(file, line)//'a quoted text is not closed; add '//text(at:at)//'.')
             else
-               call take_word(file, line, text(at + 1:last - 1), .true., groups, inside, pending, fault)
+               call take_word(file, line, unquoted(text(at:last)), .true., groups, inside, pending, fault)
             end if
             at = last + 1
          case default
@@ -143,6 +144,35 @@ contains
          end select
       end do
    end subroutine read_line
+
+   !> Where the text that is quoted from `first` on ends; beyond the line if it does not. Two quotes do not end it.
+   pure integer function closing_quote(text, first) result(last)
+      character(*), intent(in) :: text
+      integer, intent(in) :: first
+
+      last = first + 1
+      do while (last <= len(text))
+         if (text(last:last) == text(first:first)) then
+            if (text(last + 1:min(last + 1, len(text))) /= text(first:first)) return
+            last = last + 1
+         end if
+         last = last + 1
+      end do
+   end function closing_quote
+
+   !> A quoted text without its quotes; two quotes inside are one.
+   pure function unquoted(text)
+      character(*), intent(in) :: text
+      character(:), allocatable :: unquoted
+      integer :: i
+
+      unquoted = ''
+      i = 2
+      do while (i < len(text))
+         unquoted = unquoted//text(i:i)
+         i = i + merge(2, 1, text(i:i) == text(1:1))
+      end do
+   end function unquoted
 
    subroutine open_group(file, line, name, groups, inside, fault)
       character(*), intent(in) :: file, name

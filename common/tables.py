@@ -3,6 +3,7 @@
 
 # begins a comment line. What cannot be read is a TableError that names the file, the line and the column.
 """
+import codecs
 import csv
 import pathlib
 import re
@@ -79,10 +80,13 @@ def wrapped(text, width=120):
 
 
 def _text(path):
+    raw = pathlib.Path(path).read_bytes()
+    if b"\0" in raw or raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        raise TableError(f"{path} is not a text in UTF-8 or Latin-1")
     try:
-        return pathlib.Path(path).read_text(encoding="utf-8")
-    except UnicodeDecodeError as problem:
-        raise TableError(f"{path} is not a text: {problem}") from None
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:   # a title in Latin-1 goes into the results as the case has it
+        return raw.decode("latin-1")
 
 
 def _rows(text, header_in_comment, path):

@@ -4,6 +4,9 @@ program mud_host
    use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
    use arguments, only: option_t, read_command_line, option_given, option_value, option_values, WORD_LENGTH
    use checkpoints, only: read_checkpoint
+   use contact_alarm, only: warn_of_overlap
+   use contact_setup, only: contacts_act
+   use initial_conditions, only: balance_t
    use wall_clock, only: clock
    use warnings, only: print_warning
    use generalised_alpha, only: STATIC, DYNAMIC
@@ -16,6 +19,7 @@ program mud_host
    use run_setup, only: prepare_run
    use run_size, only: size_of_run
    use run_state, only: run_t
+   use start_balance, only: find_imbalance
    use scene_keys, only: print_template
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
@@ -155,12 +159,21 @@ contains
 
    subroutine warn_of_scene()
       character(WARNING_LENGTH), allocatable :: doubts(:)
+      type(balance_t) :: balance
       integer :: i
 
-      call list_warnings(scene, model, run%tension, doubts)
+      call find_imbalance(model, run, balance)
+      if (.not. quiet .and. balance%known) write (output_unit, '(a)') 'Start: at most '//short(balance%stress)// &
+         ' kPa without balance, at ('//short(balance%x(1))//', '//short(balance%x(2))//') m; the stress there is '// &
+         short(balance%there)//' kPa.'
+      call list_warnings(scene, model, run%tension, balance, doubts)
       do i = 1, size(doubts)
          call print_warning(doubts(i))
       end do
+      if (.not. only_check) return
+      ! A run says it where the stage begins.
+      call contacts_act(model, model%stages(1), run%system%contacts)
+      call warn_of_overlap(model, 1, run%system%contacts, run%state%x)
    end subroutine warn_of_scene
 
    !> Time that each part of the run took.

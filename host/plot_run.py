@@ -2,12 +2,13 @@
 """Pictures of a run of mud_host: plot_run.py FOLDER [--fields NAME ...] [--times T ...] [--histories NAME ...]
 
 Writes fields.png (a row for every time, a column for every field) and histories.png (a panel for every quantity, a line
-for every point) into the folder. Without options: the last moment, and of everything what changes.
+for every point) into the folder. Without options: the moment of the largest displacement, and of everything what changes.
 """
 import argparse
 import pathlib
 import re
 import sys
+import textwrap
 
 import h5py
 import matplotlib
@@ -21,6 +22,9 @@ sys.dont_write_bytecode = True
 import tables  # noqa: E402 (its folder is known only now)
 
 COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900", "#555555")
+# Curves are told apart without colours: a line and a marker for each.
+LINES, MARKERS = ("-", "--", "-.", ":"), "osv^DPX*"
+MARKS = 8           # markers of a curve
 # Components of vectors by the names of histories.csv.
 COMPONENTS = {"u_r": ("displacement", 0), "u_z": ("displacement", 1), "v_r": ("velocity", 0), "v_z": ("velocity", 1),
               "a_r": ("acceleration", 0), "a_z": ("acceleration", 1)}
@@ -42,7 +46,7 @@ class Run:
             # The node of a plate is in no element: it has no place in a picture.
             self.kept, elements = np.unique(file["elements"][...], return_inverse=True)
             self.nodes, self.elements = file["nodes"][...][self.kept], elements.reshape(-1, 6)
-            self.scene, self.axes = file.attrs["scene"].decode(), file.attrs["axes"].decode()
+            self.scene = file.attrs["scene"].decode()
         # Not whatever lies in the folder: an earlier run may have written more.
         names = re.findall(r">(fields_\d+\.h5):/", (folder / "results.xdmf").read_text(encoding="utf-8"))
         self.files = [folder / name for name in dict.fromkeys(names)]
@@ -66,6 +70,11 @@ class Run:
             item = file[place][name]
             values = item[...][self.kept] if place == "nodes" else item[...]
             return values, item.attrs["unit"].decode(), item.attrs["description"].decode(), place == "nodes"
+
+    def peak(self):
+        """The moment of the largest displacement of a node."""
+        return int(np.argmax([np.hypot(self.field(i, "u_r")[0], self.field(i, "u_z")[0]).max()
+                              for i in range(len(self.times))]))
 
     def ground(self, frame):
         """Whether every element is part of the ground."""
@@ -146,20 +155,33 @@ def draw_fields(run, frames, names, factor, output):
             axis.set_title(f"{name} [{unit}]")
             axis.margins(0)
             axis.set_aspect(stretch)
-            first, second = run.axes[0], run.axes[3]
             last = row == len(frames) - 1 and (not below or column == len(names) - 1)
-            axis.set_xlabel(f"{first} [m]" if last else "")
-            axis.set_ylabel(f"t = {run.times[frame]:.4g} s\n{second} [m]" if column == 0 or below else "")
+            # As scenes call them, in plane strain too.
+            axis.set_xlabel("r [m]" if last else "")
+            axis.set_ylabel(f"t = {run.times[frame]:.6g} s\nz [m]" if column == 0 or below else "")
     notes = ([f"displacements x {factor:g}"] if factor else []) + ([f"heights x {stretch:.3g}"] if stretch > 1 else [])
-    figure.suptitle(run.scene + (f" ({', '.join(notes)})" if notes else ""), fontsize=11)
+    title(figure, run.scene + (f" ({', '.join(notes)})" if notes else ""))
     figure.savefig(output)
     plt.close(figure)
     print(output)
 
 
+def title(figure, text):
+    """Above the panels, in as many lines as the picture is wide: about 13 letters of this size an inch."""
+    figure.suptitle(textwrap.fill(text, max(20, int(13*figure.get_figwidth()))), fontsize=11)
+
+
 def read_histories(folder):
     table = tables.columns(folder / "histories.csv")
     return table.pop("time"), table
+
+
+def crowded(time):
+    """(from, to) of nine tenths of the steps where they take less than a fifth of the time; None: all counts alike."""
+    most = int(0.9*len(time))
+    spans = time[most:] - time[:len(time) - most]
+    at = int(np.argmin(spans))
+    return (time[at], time[at + most]) if most > 0 and spans[at] < 0.2*(time[-1] - time[0]) else None
 
 
 def draw_histories(run, time, table, names, output):
@@ -170,8 +192,10 @@ def draw_histories(run, time, table, names, output):
                                 layout="constrained", sharex=True)
     for axis, name in zip(grid.flat, names):
         for i, point in enumerate(points):
+            # Markers of the curves stand beside each other.
             axis.plot(time, table[f"{point}.{name}"], color=COLOURS[i % len(COLOURS)], label=point,
-                      ls="-" if i < len(COLOURS) else "--")
+                      ls=LINES[i % len(LINES)], marker=MARKERS[i % len(MARKERS)], ms=3.5,
+                      markevery=((i % 4)/4/MARKS, 1/MARKS))
         axis.set_title(f"{name} [{UNITS[name[0]]}]")
         axis.grid(color="#dddddd", lw=0.6)
         axis.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useMathText=True)
@@ -182,8 +206,9 @@ def draw_histories(run, time, table, names, output):
         lowest.set_xlabel("time [s]")
         lowest.tick_params(labelbottom=True)
     if len(points) > 1:
-        grid[0, 0].legend()
-    figure.suptitle(run.scene if len(points) > 1 else f"{run.scene}, {points[0]}", fontsize=11)
+        figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center",
+                      ncols=max(1, int(13*figure.get_figwidth()/(max(map(len, points)) + 8))))
+    title(figure, run.scene if len(points) > 1 else f"{run.scene}, {points[0]}")
     figure.savefig(output)
     plt.close(figure)
     print(output)
@@ -197,7 +222,8 @@ def main():
     parser.add_argument("--times", nargs="+", type=float, help="[s]; the nearest moments that were written are taken")
     parser.add_argument("--histories", nargs="+", help="columns of histories.csv without the name of the point")
     parser.add_argument("--window", nargs=2, type=float, metavar=("FROM", "TO"),
-                        help="histories of this time alone [s]")
+                        help="histories of this time alone [s]; default: all, or where nine tenths of the steps lie if "
+                        "these take less than a fifth of the time")
     parser.add_argument("--deformed", type=float, default=0.0, metavar="FACTOR", help="draw displacements so many fold")
     parser.add_argument("--output", type=pathlib.Path, help="folder of the pictures; default: that of the run")
     options = parser.parse_args()
@@ -208,16 +234,19 @@ def main():
     output = options.output or options.folder
     output.mkdir(parents=True, exist_ok=True)
 
-    last = len(run.times) - 1
-    frames = [int(np.argmin(np.abs(np.array(run.times) - t))) for t in options.times] if options.times else [last]
+    frames = [int(np.argmin(np.abs(np.array(run.times) - t))) for t in options.times] if options.times else [run.peak()]
     names = options.fields and choose(options.fields, run.names, "field")
-    names = names or [n for n in USUAL if n in run.names and tells(run, last, n)][:PAGE] or ["u_z"]
+    names = names or [n for n in USUAL if n in run.names and tells(run, frames[-1], n)][:PAGE] or ["u_z"]
     draw_fields(run, list(dict.fromkeys(frames)), names, options.deformed, output / "fields.png")
 
     try:
         time, table = read_histories(options.folder)
     except (OSError, tables.TableError) as problem:
         sys.exit(f"plot_run: {problem}")
+    if not options.window and crowded(time):
+        options.window = crowded(time)
+        print(f"plot_run: most steps lie between {options.window[0]:g} and {options.window[1]:g} s, which is what is "
+              f"shown; --window {time[0]:g} {time[-1]:g} shows all")
     if options.window:
         inside = (time >= options.window[0]) & (time <= options.window[1])
         time, table = time[inside], {name: values[inside] for name, values in table.items()}

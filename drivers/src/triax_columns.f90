@@ -40,7 +40,7 @@ module triax_columns
       column_t('n_guard', '1', 'rates in which a guard acted, since the start', .true.), &
       column_t('control_error', '1', 'largest relative error of prescribed stresses since the row before'), &
       column_t('stage', '1', 'stage, 0 is the start', .true.), &
-      column_t('cycle', '1', 'cycle of the stage, 0: none', .true.), &
+      column_t('cycle', '1', 'cycle of the stage; a reversal belongs to the cycle that it ends; 0: none', .true.), &
       column_t('r_u', '1', 'pore pressure of the stage over the effective confining stress at its start'), &
       column_t('p_a', 'kPa', 'air pressure above the atmosphere'), &
       column_t('sig_11', 'kPa', 'effective stress'), column_t('sig_22', 'kPa', 'effective stress'), &

@@ -72,17 +72,16 @@ contains
             short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//name//', q '// &
             short(deviator_stress(point))//name//', e '//short(void_ratio(soil, point))//', S_w '// &
             short(saturation(soil, point))//of_state(', psi ', soil%i_state_parameter, '')
-         write (output_unit, '(a)') '   work       '//whole(tally%increments)//' increments ('//whole(tally%cuts)// &
-            ' cuts), '//whole(tally%updates)//' updates; '//of_state('', soil%i_n_substep, ' substeps, ')// &
-            of_state('', soil%i_n_reject, ' rejected, ')//of_state('', soil%i_n_rate, ' rates, ')// &
-            of_state('', soil%i_n_reset, ' resets; ')// &
+         write (output_unit, '(a)') '   work       '//whole(tally%increments)//' increments'// &
+            counted(', ', tally%cuts, ' cuts')//', '//whole(tally%updates)//' updates'// &
+            counter(soil%i_n_substep, ' substeps')//counter(soil%i_n_reject, ' rejected')// &
+            counter(soil%i_n_rate, ' rates')//counter(soil%i_n_reset, ' resets')//'; '// &
             short(real(nint(100.0_wp*(clock() - timer%start)), wp)/100.0_wp)//' s'
          guards = ''
          do i = 1, soil%law%n_guards
-            if (i > 1) guards = guards//', '
-            guards = guards//trim(soil%law%guard_names(i))//' '//whole(tally%guards(i))
+            guards = guards//counted(', '//trim(soil%law%guard_names(i))//' ', tally%guards(i), '')
          end do
-         if (guards /= '') write (output_unit, '(a)') '   guards     '//guards
+         if (guards /= '') write (output_unit, '(a)') '   guards     '//guards(3:)
          if (tally%solved > 0) then
             write (output_unit, '(a)') '   control    prescribed stresses are met within '//short(tally%worst)// &
                ' of their value (allowed '//short(tally%tolerance)//')'
@@ -94,6 +93,27 @@ contains
          write (output_unit, '(a)') '   output     '//table%path//', '//whole(table%rows)//' rows'
       end associate
    contains
+      !> A counter of the state, behind a comma; nothing where it is 0 or the law has none.
+      function counter(place, after) result(text)
+         integer, intent(in) :: place
+         character(*), intent(in) :: after
+         character(:), allocatable :: text
+
+         text = ''
+         if (place == 0) return
+         if (state_value(point, place) > 0.0_wp) text = ', '//short(state_value(point, place))//after
+      end function counter
+
+      !> A count between two texts; nothing where it is 0.
+      function counted(before, number, after) result(text)
+         character(*), intent(in) :: before, after
+         integer, intent(in) :: number
+         character(:), allocatable :: text
+
+         text = ''
+         if (number > 0) text = before//whole(number)//after
+      end function counted
+
       !> A state variable between two texts; nothing where the law has none.
       function of_state(before, place, after) result(text)
          character(*), intent(in) :: before, after

@@ -40,6 +40,8 @@ contains
       stages: do i = 1, size(test%stages)
          associate (stage => test%stages(i))
             call begin_stage(test%soil, stage, point, pressure, run, fault)
+            if (fault%code == 0 .and. run%finished) &   ! it has no length: its end is where it begins
+               call write_row(table, test%soil, point, run, 0.0_wp, i, fault)
             if (fault%code /= 0) exit stages
             do while (.not. run%finished)
                way = run%way

@@ -27,7 +27,7 @@ module triax_stage_run
       logical :: row = .false.             !< The last increment calls for a row of the output.
       integer :: k = 0                     !< Increments of the present way.
       integer :: way = 0, ways = 1         !< Present way, number of ways.
-      integer :: cycle = 0                 !< Present cycle, from 1; 0: none.
+      integer :: cycle = 0                 !< Cycle of the last increment, from 1; 0: none.
       logical :: open = .false.            !< The way ends where a stress is reached.
       real(wp) :: centre = 0.0_wp, goal = 0.0_wp, direction = 1.0_wp
       logical :: sealed = .false.          !< Undrained and saturated: pore pressure is what changes.
@@ -85,6 +85,7 @@ contains
       logical :: arrived
 
       run%k = run%k + 1
+      run%cycle = cycle_of(stage, run%way)
       if (run%open) then
          before = point
          call advance(soil, run%plan, run%k, 1.0_wp, point, tally, fault)
@@ -136,8 +137,17 @@ contains
       end subroutine stop_early
    end subroutine next_increment
 
-   !> Begins the next way, or finishes the stage after the last one.
-   subroutine next_way(soil, stage, point, run)
+   !> The cycle that a way belongs to: ways 2n - 1 and 2n make cycle n, the way back to the centre is of the last one.
+   !> 0: the stage has no cycles.
+   pure integer function cycle_of(stage, way)
+      type(stage_t), intent(in) :: stage
+      integer, intent(in) :: way
+
+      cycle_of = min((way + 1)/2, stage%cycles)
+   end function cycle_of
+
+   !> Begins the next way that has a length, or finishes the stage after the last one.
+   recursive subroutine next_way(soil, stage, point, run)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
@@ -152,12 +162,8 @@ contains
       run%goal = stage%target
       if (stage%cycles > 0) then
          ! Ways 1, 2, 3, ...: to +A, -A, +A, ...; the last one to the centre.
-         run%cycle = (run%way + 1)/2
          run%goal = run%centre + merge(stage%amplitude, -stage%amplitude, mod(run%way, 2) == 1)
-         if (run%way == run%ways) then
-            run%goal = run%centre
-            run%cycle = stage%cycles
-         end if
+         if (run%way == run%ways) run%goal = run%centre
       end if
       if (run%open) then
          run%direction = sign(1.0_wp, run%goal - quantity(soil, stage, stage%cycle_by, point))
@@ -167,7 +173,7 @@ contains
          run%plan%increments = 1
       else
          call plan_path(soil, stage, run%goal, point, run%plan)
-         run%finished = run%plan%increments == 0
+         if (run%plan%increments == 0) call next_way(soil, stage, point, run)
       end if
    end subroutine next_way
 

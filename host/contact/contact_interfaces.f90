@@ -16,8 +16,8 @@ module contact_interfaces
    use sparsity_pattern, only: pattern_t, make_pattern, place_of
    implicit none (type, external)
    private
-   public :: contacts_t, contact_interface_t, surface_t, surface_of, plate_link_t, new_interface, tie_to_plate, &
-             plate_surface
+   public :: contacts_t, contact_interface_t, surface_t, surface_of, shortest_edge, plate_link_t, new_interface, &
+             tie_to_plate, plate_surface
    public :: begin_friction, follow_friction, friction_turns, accept_friction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
              contact_forces, mean_contact_forces, rounding_of_ties, stretch_ties
@@ -89,6 +89,13 @@ contains
       surface%edges = reshape(place(reshape(edges, [size(edges)])), shape(edges))
       surface%x0 = x(:, surface%node)
    end function surface_of
+
+   !> Between the ends of its edges [m].
+   pure real(wp) function shortest_edge(surface) result(length)
+      type(surface_t), intent(in) :: surface
+
+      length = minval(norm2(surface%x0(:, surface%edges(2, :)) - surface%x0(:, surface%edges(1, :)), dim=1))
+   end function shortest_edge
 
    !> The straight edges between corners, body on the left.
    pure function plate_surface(corners) result(surface)

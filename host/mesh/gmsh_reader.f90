@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Reads Gmsh 4.1 text meshes of 6-node triangles; physical groups become groups of the mesh: by their names, or,
-!> without one, by their dimension and number, as curve_7 (point_, surface_).
+!> without one, by their dimension and number, as curve_7 (point_, surface_). A mesh lies in the plane x, y or x, z.
 module gmsh_reader
    use exit_codes, only: EXIT_MESH
    use kinds, only: wp
@@ -12,6 +12,8 @@ module gmsh_reader
    public :: read_gmsh
 
    integer, parameter :: LINE3 = 8, TRIANGLE6 = 9, POINT = 15   !< Gmsh's element types.
+   integer, parameter :: QUADRILATERALS(3) = [3, 10, 16]        !< With 4, 9 and 8 nodes.
+   real(wp), parameter :: FLAT = 1.0e-9_wp      !< Share of the mesh that a coordinate which does not vary may vary by.
    integer, parameter :: LONGEST = 4096
    real(wp), parameter :: FARTHEST = 1.0e15_wp   !< [m] Areas and Jacobians of such coordinates are still numbers.
 
@@ -51,6 +53,7 @@ contains
       type(entity_t), allocatable :: entities(:)
       type(block_t), allocatable :: blocks(:)
       integer, allocatable :: number_of(:)
+      real(wp), allocatable :: xyz(:, :)
       integer :: status
 
       reader%file = file
@@ -73,14 +76,18 @@ contains
             call read_names(reader, names, fault)
          case ('$Entities')
             call read_entities(reader, entities, fault)
+         case ('$PartitionedEntities')
+            call wrong(reader, 'the mesh is partitioned', fault, 'mesh it again without -part and '// &
+                       'Mesh.NbPartitions, or call gmsh.model.mesh.unpartition() in Python and write it')
          case ('$Nodes')
-            call read_nodes(reader, mesh, number_of, fault)
+            call read_nodes(reader, xyz, number_of, fault)
          case ('$Elements')
             call read_elements(reader, number_of, blocks, fault)
          end select
       end do
       close (reader%unit)
-      if (fault%code == 0 .and. .not. allocated(mesh%x)) call wrong(reader, 'there is no section $Nodes', fault)
+      if (fault%code == 0 .and. .not. allocated(xyz)) call wrong(reader, 'there is no section $Nodes', fault)
+      if (fault%code == 0) call find_plane(reader, xyz, mesh, fault)
       if (fault%code == 0) call name_others(entities, names)
       if (fault%code == 0) call collect_elements(reader, names, entities, blocks, mesh, fault)
    end subroutine read_gmsh
@@ -101,14 +108,39 @@ contains
       end do
    end subroutine name_others
 
-   subroutine wrong(reader, what, fault)
+   subroutine wrong(reader, what, fault, advice)
       type(reader_t), intent(in) :: reader
       character(*), intent(in) :: what
       type(fault_t), intent(inout) :: fault
+      character(*), intent(in), optional :: advice
+      character(:), allocatable :: remedy
 
-      if (fault%code == 0) call raise(fault, EXIT_MESH, at_line(reader%file, reader%line)//what// &
-                                      '; write the mesh with gmsh -2 -order 2 -format msh41.')
+      remedy = 'write the mesh with gmsh -2 -order 2 -format msh41'
+      if (present(advice)) remedy = advice
+      if (fault%code == 0) call raise(fault, EXIT_MESH, at_line(reader%file, reader%line)//what//'; '//remedy//'.')
    end subroutine wrong
+
+   !> The plane of a mesh: x, y, or, where y does not vary and z does, x, z.
+   subroutine find_plane(reader, xyz, mesh, fault)
+      type(reader_t), intent(in) :: reader
+      real(wp), intent(in) :: xyz(:, :)   !< (3, nodes) [m]
+      type(mesh_t), intent(inout) :: mesh
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: range(3)
+      integer :: up
+
+      range = 0.0_wp
+      if (size(xyz, 2) > 0) range = maxval(xyz, dim=2) - minval(xyz, dim=2)
+      up = 2
+      if (range(2) <= FLAT*maxval(range)) up = 3
+      if (range(5 - up) > FLAT*maxval(range) .or. range(1) <= FLAT*maxval(range)) then
+         call raise(fault, EXIT_MESH, trim(reader%file)//': the mesh lies in no plane x, y or x, z: its nodes '// &
+                    'extend '//short(range(1))//' m along x, '//short(range(2))//' along y, '//short(range(3))// &
+                    ' along z; rotate it into one of them.')
+         return
+      end if
+      mesh%x = xyz([1, up], :)
+   end subroutine find_plane
 
    subroutine next(reader, fault)
       type(reader_t), intent(inout) :: reader
@@ -217,9 +249,9 @@ contains
       end do
    end subroutine read_entities
 
-   subroutine read_nodes(reader, mesh, number_of, fault)
+   subroutine read_nodes(reader, xyz, number_of, fault)
       type(reader_t), intent(inout) :: reader
-      type(mesh_t), intent(inout) :: mesh
+      real(wp), allocatable, intent(inout) :: xyz(:, :)   !< (3, nodes) [m]
       integer, allocatable, intent(inout) :: number_of(:)   !< Tag to number.
       type(fault_t), intent(inout) :: fault
       integer :: head(4), block_head(4), b, i, used, status
@@ -229,9 +261,9 @@ contains
       call integers(reader, head, fault)
       call check_announced(reader, 'the number of nodes', head(2), fault)
       call check_announced(reader, 'the largest node tag', head(4), fault)
-      if (allocated(mesh%x)) call wrong(reader, 'there is a second section $Nodes', fault)
+      if (allocated(xyz)) call wrong(reader, 'there is a second section $Nodes', fault)
       if (fault%code /= 0) return
-      allocate (mesh%x(2, head(2)), source=0.0_wp)
+      allocate (xyz(3, head(2)), source=0.0_wp)
       deallocate (number_of)
       allocate (number_of(head(4)), source=0)
       used = 0
@@ -257,8 +289,8 @@ contains
             if (number_of(tags(i)) /= 0) call wrong(reader, 'node '//whole(tags(i))//' comes twice', fault)
             number_of(tags(i)) = used
             status = 1
-            if (only_numbers(reader)) read (reader%text, *, iostat=status) mesh%x(:, used)
-            if (status /= 0 .or. .not. all(abs(mesh%x(:, used)) <= FARTHEST)) &
+            if (only_numbers(reader)) read (reader%text, *, iostat=status) xyz(:, used)
+            if (status /= 0 .or. .not. all(abs(xyz(:, used)) <= FARTHEST)) &
                call wrong(reader, 'expected coordinates of at most '//short(FARTHEST)//' m', fault)
          end do
       end do
@@ -293,6 +325,9 @@ contains
          case (TRIANGLE6)
             n = 6
          case default
+            if (any(QUADRILATERALS == block_head(3))) call wrong(reader, 'the mesh has quadrilaterals', fault, &
+               'mesh it without Recombine and Mesh.RecombineAll, or call setOrder(1), splitQuadrangles(), '// &
+               'setOrder(2) of gmsh.model.mesh in Python and write it')
             call wrong(reader, 'elements of type '//whole(block_head(3))//' cannot be used: 6-node triangles and '// &
                        '3-node edges are', fault)
             return
@@ -353,6 +388,8 @@ contains
       allocate (edges(3, 0))
       call add_group(mesh, 'all', [(i, i=1, total)], edges, [integer ::])
       do k = 1, size(names)
+         ! Those of one name and dimension are one group.
+         if (any(names(:k - 1)%name == names(k)%name .and. names(:k - 1)%dimension == names(k)%dimension)) cycle
          elements = [integer ::]
          nodes = [integer ::]
          edges = reshape([integer ::], [3, 0])
@@ -368,19 +405,26 @@ contains
             end select
          end do
          call orient(mesh, edges)
-         if (names(k)%name /= 'all') call add_group(mesh, trim(names(k)%name), elements, edges, nodes)
+         if (names(k)%name /= 'all') then
+            call add_group(mesh, trim(names(k)%name), elements, edges, nodes)
+         else if (size(elements) < total) then
+            call raise(fault, EXIT_MESH, trim(reader%file)//': a physical group is called ''all'' and has not all '// &
+                       'triangles, which is what a scene calls so; give it another name.')
+            return
+         end if
       end do
    contains
       pure logical function has_tag(one, name)
          type(block_t), intent(in) :: one
          type(physical_t), intent(in) :: name
-         integer :: e
+         integer :: e, n
 
          has_tag = .false.
          if (one%dimension /= name%dimension) return
          do e = 1, size(entities)
             if (entities(e)%dimension == one%dimension .and. entities(e)%tag == one%entity) &
-               has_tag = any(abs(entities(e)%physical) == name%tag)
+               has_tag = any([(any(abs(entities(e)%physical) == names(n)%tag .and. names(n)%name == name%name .and. &
+                                   names(n)%dimension == name%dimension), n=1, size(names))])
          end do
       end function has_tag
    end subroutine collect_elements

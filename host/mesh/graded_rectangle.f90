@@ -1,7 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Built-in mesh: a rectangle of blocks, each cut into cells whose size grows in a constant ratio, two triangles a cell.
 !> Boundaries left, right, bottom, top; the pieces between two breaks are top_1, top_2, ... (right_1 from the bottom).
-!> Regions: all, and block_I_J (I along r, J along z).
+!> Regions: all, and block_I_J (I along r, J along z). Where blocks meet: interface_r_I_J between block_I_J and the next
+!> one along r, interface_z_I_J between it and the next one along z; the lines of all J, or I: interface_r_I,
+!> interface_z_J.
 module graded_rectangle
    use kinds, only: wp
    use triangle_mesh, only: mesh_t, add_group
@@ -80,6 +82,7 @@ contains
       end do
       call add_regions()
       call add_sides()
+      call add_interfaces()
    contains
       pure integer function node(i, j)
          integer, intent(in) :: i, j
@@ -127,6 +130,38 @@ contains
                                       [3, nr]), r_piece)
          call add_side('left', reshape([(node(0, 2*c), node(0, 2*c - 2), node(0, 2*c - 1), c=1, nz)], [3, nz]), z_piece)
       end subroutine add_sides
+
+      !> Edges between blocks, the block before on their left: what acts on them takes its side from the ground.
+      subroutine add_interfaces()
+         integer :: i, j, c
+         character(24) :: name
+
+         do i = 1, nr - 1
+            if (r_piece(i) == r_piece(i + 1)) cycle
+            write (name, '(a,i0)') 'interface_r_', r_piece(i)
+            call add_side(trim(name), reshape([(node(2*i, 2*c - 2), node(2*i, 2*c), node(2*i, 2*c - 1), c=1, nz)], &
+                                              [3, nz]), z_piece)
+         end do
+         do j = 1, nz - 1
+            if (z_piece(j) == z_piece(j + 1)) cycle
+            call add_interface_z(reshape([(node(2*c, 2*j), node(2*c - 2, 2*j), node(2*c - 1, 2*j), c=1, nr)], &
+                                         [3, nr]), z_piece(j))
+         end do
+      end subroutine add_interfaces
+
+      !> The number along r comes first in the names of the pieces, as in those of the blocks.
+      subroutine add_interface_z(edges, number)
+         integer, intent(in) :: edges(:, :), number
+         character(24) :: name
+         integer :: p, c
+
+         write (name, '(a,i0)') 'interface_z_', number
+         call add_group(mesh, trim(name), [integer ::], edges, [integer ::])
+         do p = 1, maxval(r_piece)
+            write (name, '(a,i0,a,i0)') 'interface_z_', p, '_', number
+            call add_group(mesh, trim(name), [integer ::], edges(:, pack([(c, c=1, nr)], r_piece == p)), [integer ::])
+         end do
+      end subroutine add_interface_z
 
       subroutine add_side(name, edges, piece)
          character(*), intent(in) :: name

@@ -15,6 +15,7 @@ module absorbing_boundaries
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: state_t, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_types, only: place_of, acts_in, stage_t, absorber_t
+   use staged_ground, only: facing_edges
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -50,19 +51,19 @@ contains
       type(dashpots_t), intent(out) :: one
       type(fault_t), intent(inout) :: fault
       type(ground_t) :: ground
+      integer, allocatable :: edges(:, :)
       integer :: e, k, f
 
       allocate (one%row(0), one%column(0), one%value(0))
       allocate (one%held(model%dofs%n), source=.false.)
       allocate (one%incoming(model%dofs%n), source=0.0_wp)
       one%amplitude = absorber%amplitude
-      associate (edges => model%domain%mesh%groups(absorber%group)%edges)
-         do e = 1, size(edges, 2)
-            call ground_behind(model, absorber, edges(:, e), state, ground, fault)
-            if (fault%code /= 0) return
-            call add_edge(model, edges(:, e), ground, one)
-         end do
-      end associate
+      edges = facing_edges(model, absorber%group, absorber%stages)
+      do e = 1, size(edges, 2)
+         call ground_behind(model, absorber, edges(:, e), state, ground, fault)
+         if (fault%code /= 0) return
+         call add_edge(model, edges(:, e), ground, one)
+      end do
       do k = 1, size(one%row)
          f = model%dofs%field(one%column(k))
          if (f > DISPLACEMENTS) cycle
@@ -85,9 +86,9 @@ contains
       logical :: with_pores, with_flow
       integer :: e, i
 
-      e = findloc([(all([any(model%domain%mesh%t6(:, i) == edge(1)), any(model%domain%mesh%t6(:, i) == edge(2)), &
-                         any(model%domain%mesh%t6(:, i) == edge(3))]), i=1, size(model%domain%mesh%t6, 2))], &
-                  .true., dim=1)
+      ! The triangle on its left: of two that share it the other may be no ground.
+      e = findloc([(any(model%domain%mesh%t6(4:6, i) == edge(3) .and. model%domain%mesh%t6(1:3, i) == edge(1)), &
+                    i=1, size(model%domain%mesh%t6, 2))], .true., dim=1)
       call look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
       if (fault%code /= 0) return
       if (absorber%rho > 0.0_wp) rho = absorber%rho

@@ -7,6 +7,7 @@ module boundary_loads
    use model_types, only: model_t, factor_at, gravity_at
    use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
                           LOAD_FORCE_R, stage_t, load_t, plate_t
+   use staged_ground, only: facing_edges
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, unknowns_of_body, tie, tie_pairs
    implicit none (type, external)
@@ -58,15 +59,17 @@ contains
       real(wp), intent(in) :: base, slope
       real(wp), intent(inout) :: shape(:)
       logical :: acts(size(model%domain%mesh%groups(load%group)%edges, 2))
+      integer, allocatable :: edges(:, :)
       integer :: e, k, f
 
       associate (group => model%domain%mesh%groups(load%group))
          if (load%kind < LOAD_FORCE_R) then
             acts = .true.
             if (any(load%kind == [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) acts = edges_with_flow(model%domain, load%group)
-            do e = 1, size(group%edges, 2)
+            edges = facing_edges(model, load%group, load%stages)
+            do e = 1, size(edges, 2)
                if (.not. acts(e)) cycle
-               call add_edge(model, dofs, group%edges(:, e), load%kind, base, slope, shape)
+               call add_edge(model, dofs, edges(:, e), load%kind, base, slope, shape)
             end do
          else
             f = merge(AT_U_R, AT_U_Z, load%kind == LOAD_FORCE_R)

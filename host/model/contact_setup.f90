@@ -5,6 +5,7 @@ module contact_setup
    use boundary_loads, only: plate_loads
    use model_types, only: model_t
    use scene_types, only: acts_in, plate_t, stage_t
+   use staged_ground, only: facing_edges
    use unknown_fields, only: AT_U_Z
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
    use contact_interfaces, only: contacts_t, surface_t, plate_link_t, surface_of, new_interface, tie_to_plate, &
@@ -39,10 +40,10 @@ contains
                   master = plate_surface(model%plates(one%plate)%corners)
                   link = link_of(model%plates(one%plate))
                else
-                  master = surface_of(mesh%groups(one%master)%edges, mesh%x)
+                  master = surface_of(facing_edges(model, one%master, one%stages), mesh%x)
                end if
-               call new_interface(model%dofs, surface_of(mesh%groups(one%slave)%edges, mesh%x), master, link, &
-                                  one%options, contacts%interfaces(i), status)
+               call new_interface(model%dofs, surface_of(facing_edges(model, one%slave, one%stages), mesh%x), master, &
+                                  link, one%options, contacts%interfaces(i), status)
                if (status%code == CONTACT_OK) cycle
                call contact_message(status, text)
                call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//trim(text)//'.')

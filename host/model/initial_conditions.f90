@@ -15,11 +15,12 @@ module initial_conditions
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    use scene_types, only: initial_t
    use staged_ground, only: is_staged, ground_of
+   use vertical_lines, only: strips_t, new_strips, pieces_above
    implicit none (type, external)
    private
-   public :: initial_state, tension_t
+   public :: initial_state, tension_t, balance_t
 
-   integer, parameter :: SLICES = 400   !< Of a column, for its weight: relative error 1/(24 SLICES**2) of its bend.
+   integer, parameter :: OF_COLUMN = 400   !< Slices of a column, for its weight: relative error 1/(24 of the square).
 
    !> Points of MUD with a tensile component of the effective stress that the scene prescribes, or with no stress.
    type :: tension_t
@@ -28,6 +29,22 @@ module initial_conditions
       real(wp) :: largest = 0.0_wp   !< [kPa]
       real(wp) :: z = 0.0_wp         !< Where it is [m].
    end type tension_t
+
+   !> The largest stress that nothing balances at the start (start_balance).
+   type :: balance_t
+      logical :: known = .false., matters = .false.   !< Found; more than a share of what is there.
+      real(wp) :: stress = 0.0_wp, there = 0.0_wp     !< Without balance; largest total normal stress there [kPa].
+      real(wp) :: x(2) = 0.0_wp                       !< Where it is [m].
+   end type balance_t
+
+   !> What the stress of a point is found from: which &initial every element has, and what lies above what.
+   type :: ground_t
+      type(initial_t), allocatable :: initials(:)   !< Those of the scene, after them one that gives nothing.
+      integer, allocatable :: of(:)                 !< Place of that of every element in them.
+      logical, allocatable :: present(:)            !< (elements) In the first stage.
+      logical :: alike = .true.                     !< One region, one &initial: what lies above a point is as it is.
+      type(strips_t) :: strips
+   end type ground_t
 contains
    !> State of a model at the start; a fault where a material refuses it. `tension`: points with a tensile stress.
    !> docs/theory/host.md section 8. Stresses: tension positive, pore pressures: compression positive [kPa]. Fault
@@ -37,7 +54,7 @@ contains
       type(state_t), intent(out) :: state
       type(fault_t), intent(inout) :: fault
       type(tension_t), intent(out), optional :: tension
-      type(initial_t), allocatable :: of_point(:)
+      type(ground_t) :: ground
       type(saturation_t) :: sat
       character(600) :: text
       real(wp) :: p_c, pressures(2)
@@ -49,18 +66,15 @@ contains
          state%present = ground_of(model, 1)
          state%joins = spread(.false., 1, size(state%present))
       end if
-      allocate (of_point(size(state%s)))
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
             do n = 1, size(group%nodes)
                state%v(AT_U_Z, group%nodes(n)) = one%v_z + one%wave*sin(one%wave_number &
                                                *(model%domain%mesh%x(2, group%nodes(n)) - one%datum))
             end do
-            do n = 1, size(group%elements)
-               of_point((group%elements(n) - 1)*model%domain%rule + 1:group%elements(n)*model%domain%rule) = one
-            end do
          end associate
       end do
+      ground = ground_at_start(model, [(is_present(state, e), e=1, size(model%domain%region_of))])
       state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model)
       call clear_dry_nodes(model, state%x)
       ! Pressures live on the vertices alone where they are linear.
@@ -70,7 +84,7 @@ contains
          end do
       end if
       do e = 1, size(model%domain%mesh%t6, 2)
-         associate (region => model%domain%regions(model%domain%region_of(e)))
+         associate (region => model%domain%regions(model%domain%region_of(e)), one => ground%initials(ground%of(e)))
             do g = 1, model%domain%rule
                p = (e - 1)*model%domain%rule + g
                associate (gp => model%domain%gauss(g, e))
@@ -78,20 +92,20 @@ contains
                      model%domain%carriers(:model%domain%n_carriers(e), e)))
                   p_c = pressures(2)
                   ! New ground brings the water of its own suction, whatever its first nodes have.
-                  if (.not. is_present(state, e)) p_c = suction(of_point(p), gp%x(2))
+                  if (.not. is_present(state, e)) p_c = suction(one, gp%x(2))
                   if (region%with_c) then
                      sat = region%law%retention(p_c, state%e(p))
                      state%s(p) = sat%s
-                     if (of_point(p)%saturation > 0.0_wp) state%s(p) = of_point(p)%saturation
+                     if (one%saturation > 0.0_wp) state%s(p) = one%saturation
                   end if
-                  call set_stress(model, e, of_point(p), gp%x(2), state%s(p), state%stress(:, p))
+                  call set_stress(model, ground, e, gp%x, state%s(p), state%stress(:, p))
                   if (present(tension)) call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
                end associate
                associate (own => state%state(model%domain%before_state(e) + (g - 1)*region%law%n_state + 1: &
                                              model%domain%before_state(e) + g*region%law%n_state))
                   text = ''
-                  if (region%with_c .and. of_point(p)%saturation > 0.0_wp) &
-                     call region%law%preset_saturation(of_point(p)%saturation, own, text)
+                  if (region%with_c .and. one%saturation > 0.0_wp) &
+                     call region%law%preset_saturation(one%saturation, own, text)
                   if (text == '') call region%law%initial_state(state%stress(:, p), p_c, state%e(p), own, text)
                   if (text == '') then
                      state%e(p) = region%law%void_ratio(own)
@@ -145,46 +159,111 @@ contains
       end associate
    end subroutine clear_dry_nodes
 
-   !> Effective stress, tension positive.
-   subroutine set_stress(model, element, initial, z, s, stress)
+   !> Which &initial every element has, of several the last one, and the ground that weighs.
+   function ground_at_start(model, present) result(ground)
       type(model_t), intent(in) :: model
+      logical, intent(in) :: present(:)   !< (elements) In the first stage.
+      type(ground_t) :: ground
+      integer :: i, k
+
+      allocate (ground%initials(size(model%initials) + 1))
+      ground%initials(:size(model%initials)) = model%initials
+      allocate (ground%of(size(present)), source=size(ground%initials))
+      do i = 1, size(model%initials)
+         associate (elements => model%domain%mesh%groups(model%initials(i)%group)%elements)
+            do k = 1, size(elements)
+               ground%of(elements(k)) = i
+            end do
+         end associate
+         ground%alike = ground%alike .and. .not. model%initials(i)%follows
+      end do
+      ground%alike = ground%alike .and. all(present) .and. size(model%domain%regions) == 1 .and. &
+                     all(ground%of == ground%of(1))
+      ground%present = present
+      if (.not. ground%alike) ground%strips = new_strips(model%domain%mesh)
+   end function ground_at_start
+
+   !> Effective stress, tension positive.
+   subroutine set_stress(model, ground, element, x, s, stress)
+      type(model_t), intent(in) :: model
+      type(ground_t), intent(in) :: ground
       integer, intent(in) :: element
-      type(initial_t), intent(in) :: initial
-      real(wp), intent(in) :: z, s
+      real(wp), intent(in) :: x(2), s
       real(wp), intent(inout) :: stress(6)
       real(wp) :: vertical, p_w, p_c, chi, shift
 
-      if (initial%uniform) stress(1:3) = initial%sigma
-      if (.not. initial%geostatic) return
-      associate (region => model%domain%regions(model%domain%region_of(element)))
-         p_w = merge(water(initial, z), 0.0_wp, region%with_w)
-         p_c = merge(suction(initial, z), 0.0_wp, region%with_c)
+      associate (initial => ground%initials(ground%of(element)))
+         if (initial%uniform) stress(1:3) = initial%sigma
+         if (.not. initial%geostatic) return
+         associate (region => model%domain%regions(model%domain%region_of(element)))
+            p_w = merge(water(initial, x(2)), 0.0_wp, region%with_w)
+            p_c = merge(suction(initial, x(2)), 0.0_wp, region%with_c)
+         end associate
+         vertical = initial%surcharge + weight_above(model, ground, element, x)
+         chi = s*max(p_c, 0.0_wp)
+         vertical = vertical - (p_w + (1 - s)*p_c)   ! effective, compression positive
+         shift = merge(chi, 0.0_wp, initial%net)
+         stress(2) = -vertical
+         stress([1, 3]) = -(initial%k_0*(vertical - shift) + shift)
       end associate
-      vertical = initial%surcharge + weight_above(model, element, initial, z)
-      chi = s*max(p_c, 0.0_wp)
-      vertical = vertical - (p_w + (1 - s)*p_c)   ! effective, compression positive
-      shift = merge(chi, 0.0_wp, initial%net)
-      stress(2) = -vertical
-      stress([1, 3]) = -(initial%k_0*(vertical - shift) + shift)
    end subroutine set_stress
 
-   !> Weight of a column of this region from z to the surface [kPa].
-   real(wp) function weight_above(model, element, initial, z) result(weight)
+   !> Weight of what lies between a point and the surface, layer by layer [kPa]; where no element does, it is as the
+   !> point's own. docs/theory/host.md section 8.
+   real(wp) function weight_above(model, ground, element, x) result(weight)
       type(model_t), intent(in) :: model
+      type(ground_t), intent(in) :: ground
       integer, intent(in) :: element
+      real(wp), intent(in) :: x(2)   !< [m]
+      real(wp), allocatable :: ends(:)
+      integer, allocatable :: of(:)
+      integer :: i, last
+
+      associate (initial => ground%initials(ground%of(element)))
+         if (ground%alike) then
+            ends = [x(2), initial%surface]
+            of = [element]
+         else if (initial%follows) then
+            call pieces_above(model%domain%mesh, ground%strips, x, ends=ends, element=of)
+         else
+            call pieces_above(model%domain%mesh, ground%strips, x, initial%surface, ends, of)
+         end if
+      end associate
+      where (of == 0) of = element
+      weight = 0.0_wp
+      if (.not. abs(ends(size(ends)) - x(2)) > 0.0_wp) return
+      last = 1
+      do i = 1, size(of)
+         ! Triangles of one layer are one piece of it.
+         if (i < size(of)) then
+            if (model%domain%region_of(of(i)) == model%domain%region_of(of(i + 1)) .and. &
+                ground%of(of(i)) == ground%of(of(i + 1))) cycle
+         end if
+         if (ground%present(of(i))) weight = weight + &
+            weight_of_piece(model, ground%initials(ground%of(of(i))), of(i), ends([last, i + 1]), &
+                            (ends(i + 1) - ends(last))/(ends(size(ends)) - ends(1)))
+         last = i + 1
+      end do
+   end function weight_above
+
+   !> Weight of a piece of a column in the region of an element [kPa].
+   real(wp) function weight_of_piece(model, initial, element, ends, share) result(weight)
+      type(model_t), intent(in) :: model
       type(initial_t), intent(in) :: initial
-      real(wp), intent(in) :: z
+      integer, intent(in) :: element
+      real(wp), intent(in) :: ends(2), share   !< [m]; of the column [-].
       type(saturation_t) :: sat
       real(wp) :: at, step, n, p_a, p_c, p_c_before, rho_a
-      integer :: i
+      integer :: i, slices
 
       weight = 0.0_wp
       p_c_before = huge(p_c_before)
-      step = (initial%surface - z)/SLICES
+      slices = max(1, nint(OF_COLUMN*share))
+      step = (ends(2) - ends(1))/slices
       associate (m => model%domain, region => model%domain%regions(model%domain%region_of(element)))
          n = region%void_ratio/(1 + region%void_ratio)
-         do i = 1, SLICES
-            at = z + (i - 0.5_wp)*step
+         do i = 1, slices
+            at = ends(1) + (i - 0.5_wp)*step
             weight = weight + (1 - n)*region%rho_s
             p_c = suction(initial, at)
             ! a suction that is the same all over has one degree of saturation
@@ -198,5 +277,5 @@ contains
          end do
       end associate
       weight = weight*step*gravity_at(model, 0.0_wp)
-   end function weight_above
+   end function weight_of_piece
 end module initial_conditions

@@ -8,10 +8,11 @@ module model_builder
    use boundary_loads, only: shape_loads, ties_of
    use degrees_of_freedom, only: number_unknowns
    use free_bodies, only: check_bodies
-   use staged_ground, only: check_staged_ground
+   use staged_ground, only: check_staged_ground, check_sides
    use strength_builder, only: build_strengths
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
+   use mesh_look, only: check_carried
    use model_types, only: model_t
    use named_points, only: find_point
    use porous_domain, only: domain_t, prepare_domain
@@ -46,8 +47,10 @@ contains
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
       if (fault%code == 0) call build_boundaries(model, fault)
       if (fault%code == 0) call build_strengths(model, fault)
+      if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
       if (fault%code == 0) call check_staged_ground(model, fault)
+      if (fault%code == 0) call check_sides(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call give_pressures(model)
       if (fault%code == 0) call prepare_domain(model%domain, fault)

@@ -8,7 +8,8 @@ module name_search
    private
    public :: mesh_group, defined_name
 contains
-   !> Place of a group of the mesh; a fault names those that there are. Fault EXIT_GROUP: there is none; 0 then.
+   !> Place of a group of the mesh that is to be used; a fault names those that there are. Fault EXIT_GROUP: there is
+   !> none, one without entities, or two of them; 0 then.
    integer function mesh_group(mesh, name, place, fault) result(group)
       type(mesh_t), intent(in) :: mesh
       character(*), intent(in) :: name, place   !< Place: where the scene says it.
@@ -18,6 +19,18 @@ contains
       group = find_group(mesh, trim(name))
       if (group == 0) call raise(fault, EXIT_GROUP, place//'the mesh has no group '''//trim(name)//'''; it has'// &
                                  listed([(mesh%groups(i)%name, i=1, size(mesh%groups))])//'.')
+      if (group == 0) return
+      if (size(mesh%groups(group)%nodes) == 0) then
+         call raise(fault, EXIT_GROUP, place//'the group '''//trim(name)// &
+            ''' of the mesh is empty: no element, edge '// &
+                    'or point has its physical number; assign it again in Gmsh.')
+      else if (count([(mesh%groups(i)%name == name, i=1, size(mesh%groups))]) > 1) then
+         call raise(fault, EXIT_GROUP, place//'the mesh has groups '''//trim(name)//''' of several dimensions '// &
+                    '(points, curves, surfaces), and this could mean each of them; give them names of their own.')
+      else
+         return
+      end if
+      group = 0
    end function mesh_group
 
    !> Place of a name among definitions. Fault EXIT_GROUP: it is not among them; 0 then.

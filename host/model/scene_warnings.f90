@@ -5,10 +5,12 @@ module scene_warnings
    use kinds, only: wp
    use faults, only: at_line
    use boundary_warnings, only: list_boundary_warnings
+   use generalised_alpha, only: STATIC, DYNAMIC
    use idle_keys, only: list_idle_keys, add_warning, WARNING_LENGTH
-   use initial_conditions, only: tension_t
+   use initial_conditions, only: tension_t, balance_t
    use key_schema, only: line_of, given, get_number
    use material_elastic, only: elastic_t
+   use mesh_look, only: look_at_slits
    use model_types, only: model_t
    use namelists, only: group_t
    use scene_types, only: scene_t, place_of
@@ -48,18 +50,21 @@ module scene_warnings
       usual_t('rho_s', 0.0_wp, 20.0_wp, FAR, 'a density in Mg/m3 (quartz 2.65)')]
 contains
    !> All warnings about a scene, in the order of their kinds; empty if there are none. Raises no fault.
-   subroutine list_warnings(scene, model, tension, warnings)
+   subroutine list_warnings(scene, model, tension, balance, warnings)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       type(tension_t), intent(in) :: tension   !< Of the initial state.
+      type(balance_t), intent(in) :: balance   !< Likewise.
       character(WARNING_LENGTH), allocatable, intent(out) :: warnings(:)   !< (warnings)
 
       allocate (warnings(0))
       call look_at_sizes(scene, model, warnings)
+      call look_at_slits(model, warnings)
       call look_at_units(scene, warnings)
       call look_at_regions(scene, model, warnings)
       call look_at_materials(scene, model, warnings)
       call look_at_initials(model, tension, warnings)
+      call look_at_balance(model, balance, warnings)
       call list_boundary_warnings(model, warnings)
       call look_at_retentions(scene, model, warnings)
       call list_idle_keys(scene, warnings)
@@ -199,7 +204,7 @@ contains
          '''uniform'' in &initial.', warnings)
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
-            if (.not. one%geostatic .or. size(group%nodes) == 0) cycle
+            if (.not. one%geostatic .or. one%follows .or. size(group%nodes) == 0) cycle
             top = maxval(model%domain%mesh%x(2, group%nodes))
             if (one%surface < top - SAME_PLACE*extent(model%domain%mesh)) call add_warning(place_of(one)// &
                'surface = '//short(one%surface)//' m lies below the top of group '''//trim(one%group_name)// &
@@ -207,6 +212,26 @@ contains
          end associate
       end do
    end subroutine look_at_initials
+
+   !> A start that is not in balance. Where no &initial gives a stress, a static stage finds the balance.
+   subroutine look_at_balance(model, balance, warnings)
+      type(model_t), intent(in) :: model
+      type(balance_t), intent(in) :: balance
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      character(:), allocatable :: share, why
+
+      if (.not. balance%matters) return
+      if (model%stages(1)%kind == STATIC .and. .not. any(model%initials%geostatic .or. model%initials%uniform)) return
+      share = ', where there is no stress'
+      if (balance%there > 0.0_wp) share = ', '//short(100*balance%stress/balance%there)//' % of the stress there'
+      why = ''
+      if (model%stages(1)%kind == DYNAMIC .and. size(model%absorbers) > 0) why = ' The dashpots of &absorbing '// &
+         'hold no weight: find the balance in a static stage with a &fix that is limited to it.'
+      call add_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
+                       short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
+                       '. Stage '//trim(model%stages(1)%name)//' begins with what they set free; compare rho_s, '// &
+                       'surface, surcharge, k_0 and p_w with the loads of the start.'//why, warnings)
+   end subroutine look_at_balance
 
    !> Names of curves that are not looked up because the scene has no suction.
    subroutine look_at_retentions(scene, model, warnings)

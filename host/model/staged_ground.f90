@@ -1,14 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> Which ground a stage has, and what a scene may ask where parts of it join or leave between stages.
-!> docs/theory/host.md section 14.
+!> Which ground a stage has, on which side of an edge it lies, and what a scene may ask where parts of it join or leave
+!> between stages. docs/theory/host.md section 14.
 module staged_ground
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise, EXIT_INPUT
    use model_types, only: model_t
-   use scene_types, only: acts_in, place_of, scene_item_t
+   use scene_types, only: acts_in, place_of, scene_item_t, LOAD_PRESSURE, LOAD_RAIN
+   use texts, only: short
    implicit none (type, external)
    private
-   public :: is_staged, ground_of, check_staged_ground
+   public :: is_staged, ground_of, facing_edges, check_sides, check_staged_ground
+
+   !> Side of an edge on which the ground is: what acts along its normal acts on that.
+   integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
 contains
    !> Whether parts of the ground join or leave.
    pure logical function is_staged(model)
@@ -31,6 +35,128 @@ contains
       there = [(acts_in(model%regions(i)%stages, model%stages(number)%name), i=1, size(there))]
       present = there(model%domain%region_of)
    end function ground_of
+
+   !> Edges of a group with the ground on their left that is present in the first of some stages; check_sides sees to
+   !> the others. (3, edges)
+   pure function facing_edges(model, group, stages) result(edges)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: group              !< Of the mesh.
+      character(*), intent(in) :: stages(:)     !< In which something acts on it; none: all.
+      integer, allocatable :: edges(:, :)
+      integer, allocatable :: sides(:)
+      integer :: s, k
+
+      edges = model%domain%mesh%groups(group)%edges
+      do s = 1, size(model%stages)
+         if (acts_in(stages, model%stages(s)%name)) exit
+      end do
+      if (s > size(model%stages)) return
+      sides = sides_with_ground(model, group, s)
+      do k = 1, size(edges, 2)
+         if (sides(k) == ON_RIGHT) edges(1:2, k) = edges([2, 1], k)
+      end do
+   end function facing_edges
+
+   !> On which sides of the edges of a group a stage has ground. (edges)
+   pure function sides_with_ground(model, group, number) result(sides)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: group, number   !< Of the mesh; of the stage.
+      integer :: sides(size(model%domain%mesh%groups(group)%edges, 2))
+      logical :: present(size(model%domain%region_of))
+      logical, dimension(size(model%domain%mesh%x, 2)) :: wanted, left, right
+      integer :: from(size(model%domain%mesh%x, 2))
+      integer :: e, k
+
+      present = ground_of(model, number)
+      wanted = .false.
+      left = .false.
+      right = .false.
+      associate (edges => model%domain%mesh%groups(group)%edges, t6 => model%domain%mesh%t6)
+         wanted(edges(3, :)) = .true.
+         do k = 1, size(sides)
+            from(edges(3, k)) = edges(1, k)
+         end do
+         ! A side of a triangle is known by the node in its middle; its triangle lies on the left.
+         do e = 1, size(t6, 2)
+            if (.not. present(e)) cycle
+            do k = 1, 3
+               associate (middle => t6(k + 3, e))
+                  if (.not. wanted(middle)) cycle
+                  if (from(middle) == t6(k, e)) left(middle) = .true.
+                  if (from(middle) /= t6(k, e)) right(middle) = .true.
+               end associate
+            end do
+         end do
+         sides = ON_NONE
+         where (left(edges(3, :))) sides = ON_LEFT
+         where (right(edges(3, :))) sides = sides + ON_RIGHT
+      end associate
+   end function sides_with_ground
+
+   !> What acts along the normal of an edge needs ground on one side of it alone, and on the same one whenever it acts.
+   !> Fault EXIT_GROUP: a pressure, rain, contact or absorbing boundary acts where it lies on both sides, on none, or
+   !> changes.
+   subroutine check_sides(model, fault)
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      do i = 1, size(model%loads)
+         associate (load => model%loads(i))
+            if (any(load%kind == [LOAD_PRESSURE, LOAD_RAIN])) &
+               call look(load%scene_item_t, '&load', load%stages, load%group)
+         end associate
+      end do
+      do i = 1, size(model%contacts)
+         associate (contact => model%contacts(i))
+            call look(contact%scene_item_t, '&contact', contact%stages, contact%slave)
+            if (contact%plate == 0) call look(contact%scene_item_t, '&contact', contact%stages, contact%master)
+         end associate
+      end do
+      do i = 1, size(model%absorbers)
+         associate (absorber => model%absorbers(i))
+            call look(absorber%scene_item_t, '&absorbing', absorber%stages, absorber%group)
+         end associate
+      end do
+   contains
+      subroutine look(item, what, stages, group)
+         class(scene_item_t), intent(in) :: item
+         character(*), intent(in) :: what, stages(:)
+         integer, intent(in) :: group
+         character(*), parameter :: WORDS(0:3) = [character(44) :: 'has no ground on either side', '', '', &
+                                                  'has ground on both sides, and so no outside']
+         character(:), allocatable :: wrong, remedy
+         integer, dimension(size(model%domain%mesh%groups(group)%edges, 2)) :: sides, before
+         integer :: s, first, k
+
+         if (fault%code /= 0) return
+         first = 0
+         do s = 1, size(model%stages)
+            if (.not. acts_in(stages, model%stages(s)%name)) cycle
+            sides = sides_with_ground(model, group, s)
+            if (first == 0) before = sides
+            k = findloc((sides /= ON_LEFT .and. sides /= ON_RIGHT) .or. sides /= before, .true., dim=1)
+            if (k > 0) exit
+            if (first == 0) first = s
+         end do
+         if (s > size(model%stages)) return
+         if (any(sides(k) == [ON_LEFT, ON_RIGHT])) then
+            wrong = 'has its ground on the other side than in stage '''//trim(model%stages(first)%name)//''''
+            remedy = 'give one '//what//' for each of the stages.'
+         else
+            wrong = trim(WORDS(sides(k)))
+            remedy = 'name the stages in which the ground lies on one side alone (stages of '//what// &
+                     ' and of &region), or a group on the outside of the ground.'
+         end if
+         associate (mesh => model%domain%mesh)
+            associate (x => mesh%x(:, mesh%groups(group)%edges(3, k)))
+               call raise(fault, EXIT_GROUP, place_of(item)//'this '//what//' acts in stage '''// &
+                          trim(model%stages(s)%name)//''' on group '''//trim(mesh%groups(group)%name)// &
+                          ''', whose edge at ('//short(x(1))//', '//short(x(2))//') m '//wrong//' then; '//remedy)
+            end associate
+         end associate
+      end subroutine look
+   end subroutine check_sides
 
    !> Fault EXIT_INPUT: ground that is not there from the start with a stress of its own, or the flow of a start that
    !> lacks it; a stage without ground; EXIT_GROUP: a load, contact, absorbing boundary or rigid body that acts in a

@@ -5,6 +5,7 @@
 module reaction_rows
    use kinds, only: wp
    use boundary_conditions, only: prescribing_fixes, forces_of_supports
+   use csv, only: quoted
    use contact_drainage, only: drainage_t
    use generalised_alpha, only: scheme_t, make_scheme, STATIC
    use model_types, only: model_t, factor_at
@@ -34,7 +35,7 @@ contains
       head = ''
       if (size(list, 2) > 0) head = 'time,time_of_forces'
       do i = 1, size(list, 2)
-         head = head//','//trim(name_of(list(1, i)))//'.'//trim(SUFFIX(list(2, i)))
+         head = head//','//quoted(trim(name_of(list(1, i)))//'.'//trim(SUFFIX(list(2, i))))
       end do
    contains
       !> Of a group, or of the plate that it turns.

@@ -36,7 +36,9 @@ module energy_ledger
       real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
       real(wp) :: most_created = 0.0_wp !< Largest energy that a dynamic stage has created, so far [kJ].
       real(wp) :: overdue = 0.0_wp      !< Steps in a row, to the last, with more created energy than the stage allows.
-      real(wp) :: tolerated = 0.0_wp    !< Most that residuals within Newton's tolerance can have done in a step [kJ].
+      !> Most that residuals within Newton's tolerance can have done: in all steps before a work exceeds it, then in one
+      !> step [kJ].
+      real(wp) :: tolerated = 0.0_wp
    end type ledger_t
 
    !> Works of the mean forces of a step [kJ].
@@ -332,7 +334,12 @@ contains
       do i = 1, dofs%n
          if (dofs%field(i) <= DISPLACEMENTS) work = work + scale(i)*abs(change(dofs%field(i), dofs%node(i)))
       end do
-      ledger%tolerated = max(ledger%tolerated, tolerance*work)
+      ! Before any load has done more than that, such steps add up: nothing tells their energy from none.
+      if (ledger%largest_work < ledger%tolerated + tolerance*work) then
+         ledger%tolerated = ledger%tolerated + tolerance*work
+      else
+         ledger%tolerated = max(ledger%tolerated, tolerance*work)
+      end if
       if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Warnings of a run whose pore water pressures oscillate from node to node (docs/theory/host.md section 3.1), in which
+!> Warnings of a run whose pore water pressures alternate from node to node (docs/theory/host.md section 3.1), in which
 !> a node of a seepage face lets water in (section 7.7), or in which a material made for compression has lost its mean
 !> effective stress and has no guard that would have kept it.
 module pressure_alarm
@@ -14,44 +14,50 @@ module pressure_alarm
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: warn_of_oscillation, warn_lost_pressure, warn_of_inflow, outstanding_corner
+   public :: lines_t, warn_of_oscillation, warn_lost_pressure, warn_of_inflow, find_lines, find_alternation
 
-   !> By how much a corner may differ from all sides around it, share of the range of all pressures: linear and
-   !> parabolic fields leave nothing, a field that the mesh follows little [-].
-   real(wp), parameter :: ALARMING_SHARE = 0.25_wp
+   !> Least amplitude of an alternation that is told, share of the range of all pressures: a field that the mesh follows
+   !> bends one way at neighbouring nodes and leaves none [-].
+   real(wp), parameter :: ALARMING_SHARE = 0.1_wp
+   real(wp), parameter :: STRAIGHT = -0.8_wp        !< Cosine of the angle between two sides that go on from each other.
    real(wp), parameter :: SMALLEST_RANGE = 0.1_wp   !< [kPa] Of pressures that anybody looks at.
+
+   !> Lines of five nodes of a mesh: two sides that go on from each other at a corner.
+   type :: lines_t
+      integer, allocatable :: nodes(:, :)   !< (5, lines) end, middle, corner, middle, end
+      real(wp), allocatable :: share(:)     !< (lines) Weight of the first middle in the mean at the corner [-].
+   end type lines_t
 contains
    !> After an accepted step; once a run, on standard error, also where the run is quiet. Not in static stages, nor of
    !> linear pressures. docs/theory/host.md section 3.1. Raises no fault.
-   subroutine warn_of_oscillation(model, stage, state, told)
+   subroutine warn_of_oscillation(model, stage, state, lines, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(state_t), intent(in) :: state
+      type(lines_t), intent(inout) :: lines   !< Of the mesh; found when they are asked for first.
       logical, intent(inout) :: told
-      real(wp) :: share, p(size(model%domain%mesh%x, 2))
-      logical :: counts(size(p))
+      real(wp) :: share
+      logical :: counts(size(model%domain%mesh%x, 2))
       integer :: node, e
 
       ! Linear pressures are those of the corners alone.
       if (told .or. stage%kind == STATIC .or. model%domain%n_p < 6) return
-      p = state%x(AT_P_W, :size(p))
-      associate (mesh => model%domain%mesh, flows => [(model%domain%regions(model%domain%region_of(e))%drainage == &
-                 COUPLED .and. is_present(state, e), e=1, size(model%domain%region_of))])
-         if (.not. any(flows)) return
+      associate (mesh => model%domain%mesh)
          ! Pressures that are no unknowns of the ground do not count.
          counts = .false.
-         do e = 1, size(flows)
-            if (flows(e)) counts(mesh%t6(:, e)) = .true.
+         do e = 1, size(mesh%t6, 2)
+            if (model%domain%regions(model%domain%region_of(e))%drainage == COUPLED .and. is_present(state, e)) &
+               counts(mesh%t6(:, e)) = .true.
          end do
-         where (.not. counts) p = p(mesh%t6(1, findloc(flows, .true., dim=1)))
-         call outstanding_corner(mesh%t6(:, pack([(e, e=1, size(flows))], flows)), p, share, node)
+         if (.not. allocated(lines%nodes)) lines = find_lines(mesh%x, mesh%t6)
+         call find_alternation(lines, state%x(AT_P_W, :size(counts)), counts, share, node)
          if (share <= ALARMING_SHARE) return
          told = .true.
          call print_warning('stage '//trim(stage%name)//', time '//short(state%time)// &
             ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
-            short(p(node))//' kPa, differs from those around it by '//short(100*share)// &
-            ' % of the range of all pressures. Pressures that oscillate from node to node are wrong: refine the '// &
-            'mesh there, take longer steps or, where hardly any water drains, set pressures = ''linear'' in &scene.')
+            short(state%x(AT_P_W, node))//' kPa, lies to the other side of the mean of its neighbours than they do '// &
+            'of theirs, by '//short(100*share)//' % of the range of all pressures. Pressures that alternate from '// &
+            'node to node are wrong: set pressures = ''linear'' in &scene, which is stable where water cannot drain.')
       end associate
    end subroutine warn_of_oscillation
 
@@ -100,34 +106,87 @@ contains
       end associate
    end subroutine warn_of_inflow
 
-   !> The corner of the mesh that stands out most, and by which share of the range of all pressures; 0 where no corner
-   !> does or the range is too small to matter. A corner stands out by what it is above, or below, the middles of all
-   !> sides around it beyond what these differ from the other ends of their sides. docs/theory/host.md section 3.1.
-   pure subroutine outstanding_corner(t6, p, share, node)
-      integer, intent(in) :: t6(:, :)   !< (6, elements)
-      real(wp), intent(in) :: p(:)       !< At the nodes [kPa]. (nodes)
-      real(wp), intent(out) :: share   !< [-]
+   !> The lines of a mesh: at every corner the pairs of sides that go on from each other.
+   pure function find_lines(x, t6) result(lines)
+      real(wp), intent(in) :: x(:, :)     !< (2, nodes) [m]
+      integer, intent(in) :: t6(:, :)     !< (6, elements)
+      type(lines_t) :: lines
+      integer, allocatable :: first(:), sides(:, :)   !< Of every node its sides: (middle, end; sides of all nodes).
+      logical :: known(size(x, 2))
+      real(wp) :: one(2), other(2)
+      integer :: pass, c, i, j, n
+
+      ! Sides of every corner, each once: a middle belongs to one side.
+      allocate (first(size(x, 2) + 1), source=0)
+      allocate (sides(2, 6*size(t6, 2)))
+      do pass = 1, 2
+         known = .false.
+         do i = 1, size(t6, 2)
+            do j = 1, 3
+               associate (a => t6(j, i), b => t6(mod(j, 3) + 1, i), middle => t6(j + 3, i))
+                  if (known(middle)) cycle
+                  known(middle) = .true.
+                  if (pass == 2) sides(:, first([a, b])) = reshape([middle, b, middle, a], [2, 2])
+                  first([a, b]) = first([a, b]) + 1
+               end associate
+            end do
+         end do
+         ! Counts become places, and places that have been filled become counts again.
+         if (pass == 2) exit
+         n = 1
+         do c = 1, size(first)
+            i = first(c)
+            first(c) = n
+            n = n + i
+         end do
+      end do
+      first = eoshift(first, -1, boundary=1)
+      do pass = 1, 2
+         n = 0
+         do c = 1, size(x, 2)
+            do i = first(c), first(c + 1) - 1
+               do j = i + 1, first(c + 1) - 1
+                  one = x(:, sides(1, i)) - x(:, c)
+                  other = x(:, sides(1, j)) - x(:, c)
+                  if (dot_product(one, other) > STRAIGHT*norm2(one)*norm2(other)) cycle
+                  n = n + 1
+                  if (pass == 1) cycle
+                  lines%nodes(:, n) = [sides(2, i), sides(1, i), c, sides(1, j), sides(2, j)]
+                  lines%share(n) = norm2(other)/(norm2(one) + norm2(other))
+               end do
+            end do
+         end do
+         if (pass == 1) allocate (lines%nodes(5, n), lines%share(n))
+      end do
+   end function find_lines
+
+   !> The corner at which pressures alternate most, and the least distance of it and of both middles beside it from the
+   !> mean of their neighbours where these alternate, share of the range of all pressures; 0 where none do or the range
+   !> is too small to matter. docs/theory/host.md section 3.1.
+   pure subroutine find_alternation(lines, p, counts, share, node)
+      type(lines_t), intent(in) :: lines
+      real(wp), intent(in) :: p(:)         !< (nodes) [kPa]
+      logical, intent(in) :: counts(:)     !< (nodes) The pressure is one of the ground.
+      real(wp), intent(out) :: share       !< [-]
       integer, intent(out) :: node
-      real(wp), allocatable :: lowest(:), highest(:)
-      integer :: e, k
+      real(wp) :: span, corner, beside(2)
+      integer :: i
 
       share = 0.0_wp
       node = 1
-      if (maxval(p) - minval(p) < SMALLEST_RANGE) return
-      allocate (lowest(size(p)), source=huge(1.0_wp))
-      allocate (highest(size(p)), source=-huge(1.0_wp))
-      do e = 1, size(t6, 2)
-         do k = 1, 3
-            associate (corner => t6(k, e), middles => p(t6([k + 3, mod(k + 1, 3) + 4], e)), &
-                       ends => p(t6([mod(k, 3) + 1, mod(k + 1, 3) + 1], e)))
-               lowest(corner) = min(lowest(corner), minval(middles - abs(middles - ends)))
-               highest(corner) = max(highest(corner), maxval(middles + abs(middles - ends)))
-            end associate
-         end do
+      if (.not. any(counts)) return
+      span = maxval(p, mask=counts) - minval(p, mask=counts)
+      if (span < SMALLEST_RANGE) return
+      do i = 1, size(lines%share)
+         associate (at => lines%nodes(:, i), part => lines%share(i))
+            if (.not. all(counts(at))) cycle
+            corner = p(at(3)) - part*p(at(2)) - (1 - part)*p(at(4))
+            beside = p(at([2, 4])) - 0.5_wp*(p(at(3)) + p(at([1, 5])))
+            if (any(beside*corner >= 0.0_wp)) cycle
+            if (min(abs(corner), minval(abs(beside))) <= share*span) cycle
+            share = min(abs(corner), minval(abs(beside)))/span
+            node = at(3)
+         end associate
       end do
-      lowest = max(lowest - p, p - highest)
-      where (highest < -0.5_wp*huge(1.0_wp)) lowest = 0.0_wp   ! no corner
-      node = maxloc(lowest, 1)
-      share = max(0.0_wp, lowest(node)/(maxval(p) - minval(p)))
-   end subroutine outstanding_corner
+   end subroutine find_alternation
 end module pressure_alarm

@@ -11,6 +11,7 @@ module run_state
    use linear_system, only: system_t
    use prescribed_values, only: constraint_t
    use porous_domain, only: state_t
+   use pressure_alarm, only: lines_t
    use sparsity_pattern, only: pattern_t
    implicit none (type, external)
    private
@@ -48,6 +49,7 @@ module run_state
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Of the material.
       ! Warnings that are said once.
+      type(lines_t) :: lines                   !< Of the mesh, for the first of them.
       logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.
       real(wp) :: seconds_output = 0.0_wp      !< Wall time.
    end type run_t

@@ -70,10 +70,21 @@ contains
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations'//soft_points(model, run)//'; '//what_is_left(stage, log)//' (allowed '// &
                        short(stage%tolerance)//'), worst at '//place_of(model, node)// &
-                       unstressed(run)//weakened(model, time)//'; use a smaller dt, more cuts or a better tangent.')
+                       unstressed(run)//weakened(model, time)//advice(run))
          end select
       end associate
    end subroutine explain_failure
+
+   !> What helps where Newton's method does not converge: where shorter attempts have failed as well, none of them.
+   function advice(run) result(text)
+      type(run_t), intent(in) :: run
+      character(:), allocatable :: text
+
+      text = '; use a smaller dt, more cuts or a better tangent.'
+      if (run%at%cuts > 1) text = '. '//whole(run%at%cuts - 1)//' longer attempts failed before it: shorter '// &
+         'steps do not help here. Try a given dt (steps = ''given'' in &stage) of the length of the steps before, '// &
+         'a better tangent (tangent of the material) or a larger tolerance.'
+   end function advice
 
    !> How much of a strength is left, where one changes with time: a body without equilibrium has no other step.
    function weakened(model, time) result(text)

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Times that controlled steps end at: breaks of load histories, supports that come and go, output, end of the stage.
+!> Given steps end early where they would jump over something.
 !>
 !> Of a load history of a few breaks every one counts; of a record of thousands only those matter that a straight line
 !> over them would miss by more than a share of the accuracy. One rule serves both.
@@ -13,7 +14,8 @@ module step_landings
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: next_time, is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
+   public :: next_time, end_of_given
+   public :: is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
@@ -45,6 +47,31 @@ contains
       if (stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
          + stage%output_dt*(aint((now - run%at%t_start + close)/stage%output_dt) + 1))
    end function next_time
+
+   !> End of a given step: as late as it is asked for, unless it would jump over a whole segment of a history or all the
+   !> time in which a support acts; then where a controlled step would end [s]. docs/theory/host.md section 4.5.
+   pure real(wp) function end_of_given(model, stage, now, asked) result(until)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      real(wp), intent(in) :: now, asked   !< [s]
+      real(wp) :: close
+      integer :: i
+
+      until = asked
+      close = LAST_STEP*(asked - now)
+      do i = 1, size(model%amplitudes)
+         associate (t => model%amplitudes(i)%times)
+            if (any(t(:size(t) - 1) >= now - close .and. t(2:) <= asked + close)) until = min(until, &
+               straight_until(model%amplitudes(i), now, close, asked, CHORD_SHARE*stage%step_tolerance))
+         end associate
+      end do
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (.not. acts_in(fix%stages, stage%name) .or. fix%from < now - close .or. fix%until > asked - close) cycle
+            until = min(until, merge(fix%from, fix%until, fix%from > now + close))
+         end associate
+      end do
+   end function end_of_given
 
    !> Break of a history up to which a straight line from the present time leaves out no more than a share of its
    !> range: the one that the line to the horizon misses most, until no line misses one. Huge if there is none. [s]

@@ -10,13 +10,13 @@ module step_size
    use generalised_alpha, only: make_scheme, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
-   use step_landings, only: next_time, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
+   use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: begin_control, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over
+   public :: begin_control, negligible_changes, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over
 
    !> A step of length dt errs by its third power, n of them by n dt**3: together by the tolerance a where each errs by
    !> a**(3/2), if the change as a whole is as smooth as a step.
@@ -28,6 +28,7 @@ module step_size
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
    real(wp), parameter :: PLATE_SHARE = 0.01_wp   !< Of the way of a plate: what it does to the ground is not less.
+   real(wp), parameter :: NEWTON_SHARE = 0.1_wp   !< Of the error of a step, left to Newton's method.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
 contains
    !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
@@ -128,6 +129,8 @@ contains
       if (.not. stage%controlled) then
          if (allocated(stage%ends)) dt = min(left, run%at%factor*(next_end(stage, run) - run%state%time))
          if (dt > left*(1 - LAST_STEP)) dt = left
+         if (.not. allocated(stage%ends)) dt = end_of_given(model, stage, run%state%time, run%state%time + dt) &
+                                               - run%state%time
          return
       end if
       dt = min(run%control%controller%dt, stage%dt_max)
@@ -139,6 +142,18 @@ contains
          dt = 0.5_wp*left
       end if
    end function next_step
+
+   !> Changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa].
+   !> docs/theory/host.md section 5.1.
+   pure function negligible_changes(stage, run) result(changes)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp) :: changes(FIELDS)
+
+      changes = 0.0_wp
+      if (stage%controlled) changes(DISPLACEMENTS + 1:) = NEWTON_SHARE*stage%step_tolerance**LOCAL &
+                                                          *run%control%scale(DISPLACEMENTS + 1:)
+   end function negligible_changes
 
    !> The next of the times that given steps end at [s].
    pure real(wp) function next_end(stage, run)
@@ -215,6 +230,8 @@ contains
          call local_errors(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, &
                            run%state%a, run%next%x, run%next%v, run%next%a, error, known)
          if (stage%kind == QUASI_STATIC .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(dt, run)
+         ! Saturated soil holds no air and has no suction: its number follows no balance that holds it, and rings.
+         where (run%state%x(AT_P_C, :) < 0.0_wp .and. run%next%x(AT_P_C, :) < 0.0_wp) error(AT_P_C, :) = 0.0_wp
       end associate
    end subroutine estimate_error
 

@@ -17,12 +17,12 @@ module time_stepping
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
    use step_attempt, only: begin_stage, try_step
-   use step_size, only: next_step, keep_step, is_over
+   use step_size, only: negligible_changes, next_step, keep_step, is_over
    use step_landings, only: LAST_STEP
    use step_booking, only: book_accepted_step
    use energy_alarm, only: check_creation, warn_of_created_energy
    use ground_stages, only: change_ground
-   use contact_alarm, only: warn_of_penetration
+   use contact_alarm, only: warn_of_penetration, warn_of_overlap
    use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
    use unknown_fields, only: DISPLACEMENTS
    use scene_types, only: stage_t
@@ -87,6 +87,7 @@ contains
          if (at%stage == number) then
             call change_ground(model, number, .false., run, fault)
          else
+            if (warns(observer)) call warn_of_overlap(model, number, run%system%contacts, run%state%x)
             call begin_stage(model, number, run, fault)
          end if
          if (fault%code /= 0) return
@@ -94,6 +95,7 @@ contains
             if (is_over(stage, run)) exit
             call follow_newton(control%tolerance, model%domain%regions)
             control%roughness = roughness(model%domain%regions)
+            control%negligible = negligible_changes(stage, run)
             dt = next_step(model, stage, run)
             call try_step(model, stage, control, dt, run, log, accepted, fault)
             if (fault%code == 0 .and. accepted) then
@@ -144,7 +146,7 @@ contains
          at%step = at%step + 1
          run%steps = run%steps + 1
          if (warns(observer)) call warn_of_penetration(model, run%next%time, run%system%contacts)
-         if (warns(observer)) call warn_of_oscillation(model, stage, run%next, run%told_oscillation)
+         if (warns(observer)) call warn_of_oscillation(model, stage, run%next, run%lines, run%told_oscillation)
          if (warns(observer)) call warn_lost_pressure(model, run%next, run%told_pressure)
          if (warns(observer)) call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, run%told_inflow)
          call book_accepted_step(model, scheme, run)

@@ -121,7 +121,7 @@ contains
                   'axisymmetric in r, z or plane strain in x, y')
       call k%word('fields', scene%fields, 'u|u-p_w|u-p_w-p_c', 'unknowns; absent ones cost nothing')
       call k%flag('pressures', scene%linear_pressures, 'quadratic|linear', 'linear', &
-                  'interpolation (linear: Taylor-Hood)', ':p_w')
+                  'interpolation; linear (Taylor-Hood) is stable where water cannot drain yet', ':p_w')
       call k%whole('quadrature', scene%quadrature, 3, 12, 'points of an element: 3, 6, 7 or 12')
       call k%number('gravity', scene%gravity, ZERO, 1000*ONE, 'acceleration towards -z [m/s2]')
       call k%text('gravity_history', scene%gravity_history, 'name of a &history: factor on gravity', '+gravity', &
@@ -303,7 +303,11 @@ contains
       stress = 1
       call k%word('stress', stress, 'none|uniform|geostatic', 'effective stress at the start')
       call k%numbers('sigma', sigma, -BIG, BIG, 'uniform: rr, zz, tt, tension positive [kPa]', 'stress=uniform')
-      call k%number('surface', initial%surface, -BIG, BIG, 'geostatic: z of the surface [m]', 'stress=geostatic')
+      call k%number('surface', initial%surface, -BIG, BIG, 'geostatic: z of the surface [m]', &
+                    'stress=geostatic column=surface')
+      call k%flag('column', initial%follows, 'surface|ground', 'ground', &
+                  'geostatic: it ends at surface, or at the top of the ground above each point (slopes)', &
+                  'stress=geostatic')
       call k%number('surcharge', initial%surcharge, ZERO, BIG, 'geostatic: pressure on it [kPa]', 'stress=geostatic')
       call k%number('k_0', initial%k_0, ZERO, 10*ONE, 'geostatic: horizontal over vertical stress', 'stress=geostatic')
       call k%flag('k_0_of', initial%net, 'net|effective', 'net', 'stress that K_0 acts on where p_c > 0', &

@@ -75,6 +75,7 @@ module scene_types
       real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
       real(wp) :: saturation = 0.0_wp, v_z = 0.0_wp, wave = 0.0_wp, wave_number = 0.0_wp
       logical :: uniform = .false., geostatic = .false.
+      logical :: follows = .false.      !< Columns end at the top of the ground above a point, not at `surface`.
       real(wp) :: sigma(3) = 0.0_wp, surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp
       logical :: net = .true.           !< K_0 acts on the net stress where p_c > 0.
    end type initial_t
@@ -186,7 +187,7 @@ module scene_types
       character(NAME_LENGTH) :: name = ''
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
       type(group_t), allocatable :: groups(:)        !< As they were read, files by their contents.
-      logical :: axisymmetric = .true., linear_pressures = .false.
+      logical :: axisymmetric = .true., linear_pressures = .true.
       integer :: fields = WITH_U, quadrature = 6, threads = 0
       real(wp) :: gravity = 0.0_wp
       character(LENGTH) :: gravity_history = ''

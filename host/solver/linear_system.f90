@@ -20,6 +20,8 @@ module linear_system
 
    integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
                          T_CONTACT = 6
+   !> [kN] or [m3/s]: a field in which nothing acts yet is not refined to less.
+   real(wp), parameter :: LEAST_SCALE = 1.0e-12_wp
    integer, parameter :: MOST_STEPS = 6               !< Most steps of a solution with factors of an earlier matrix.
    integer, parameter :: WORN_STEPS = 5               !< After so many steps the next matrix is factorised again.
 
@@ -58,12 +60,12 @@ contains
       integer :: steps, active, i
 
       t0 = clock()
-      scales = field_scales(dofs, constraint, assembly, system%largest)
+      scales = max(field_scales(dofs, constraint, assembly, system%largest), LEAST_SCALE)
       ! What a step changes is not known before its first solution: the forces that it asks for tell.
       if (assembly%with_change) scales = max(scales, asked_for(dofs, rhs))
       weight = 1/scales(dofs%field)
       do i = 1, dofs%n
-         if (is_body(constraint, i)) weight(i) = 1/body_scale(constraint, assembly, system%largest, i)
+         if (is_body(constraint, i)) weight(i) = 1/max(body_scale(constraint, assembly, system%largest, i), LEAST_SCALE)
       end do
       active = 0
       system%indefinite = .false.

@@ -34,6 +34,7 @@ module newton_step
                          CONTACT_FAILED = 5
    real(wp), parameter :: ROUNDING = 1.0e-12_wp       !< Of all contributions: no residual to begin with is smaller.
    real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp    !< Of an error: stresses of the next pass are integrated to it.
+   real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Of an unknown: old, predicted, corrected, and their difference.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
 contains
    !> From `old` to `new` over scheme%dt; `new` is of use only after CONVERGED. docs/theory/host.md section 5.
@@ -55,6 +56,7 @@ contains
       real(wp), allocatable :: rhs(:), dx(:)
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
       real(wp) :: norm, norm_0, begun, t0   !< begun: the norm that a reduction is a share of.
+      real(wp) :: rounded(FIELDS)           !< What the rounding of the unknowns makes [kN, m3/s].
       integer :: status
       logical :: with_tangent, guessed, turned, rough
 
@@ -75,6 +77,7 @@ contains
       call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       norm_0 = -1.0_wp
       begun = 0.0_wp
+      rounded = 0.0_wp
       with_tangent = .true.
       guessed = .not. control%no_predictor
       do
@@ -132,6 +135,9 @@ contains
             system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
             system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
                rounding_of_saturation(domain, dofs, constraint, old, scheme)/control%tolerance)
+            rounded = rounding_of_unknowns(dofs, pattern, constraint, assembly%values, new%x)
+            system%rounding = max(system%rounding, rounded/control%tolerance)
+            assembly%unresolved = max(assembly%unresolved, rounded(1)/control%tolerance)
          end if
          ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
          if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
@@ -148,7 +154,8 @@ contains
          t0 = clock()
          log%iterations = log%iterations + 1
          call follow_friction(system%contacts, fresh=.false.)
-         call add_correction(dofs, dx, new%x, log%correction)
+         log%before = log%changed
+         call add_correction(dofs, dx, new%x, log%correction, log%changed)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
          with_tangent = .false.
       end do
@@ -187,7 +194,7 @@ contains
          if (.not. pass) log%outcome = MATERIAL_FAILED
          if (.not. pass) return
          call add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
-         assembly%unresolved = rounding_of_ties(system%contacts)/control%tolerance
+         assembly%unresolved = max(rounding_of_ties(system%contacts), rounded(1))/control%tolerance
       end function pass
    end subroutine take_step
 
@@ -251,6 +258,33 @@ contains
       rounding = epsilon(1.0_wp)/scheme%dt*norm2(pack(pores, .not. constraint%fixed))
    end function rounding_of_saturation
 
+   !> What a rounding of every unknown changes in the balances, by the entries of the matrix: the norms over the free
+   !> rows of every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces.
+   !> Of displacements [kN], of pressures [m3/s]. docs/theory/host.md section 5.1.
+   pure function rounding_of_unknowns(dofs, pattern, constraint, values, x) result(rounding)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(constraint_t), intent(in) :: constraint
+      real(wp), intent(in) :: values(:)   !< Of the matrix, in the order of the pattern.
+      real(wp), intent(in) :: x(:, :)     !< (FIELDS, nodes) [m, kPa]
+      real(wp) :: rounding(FIELDS)
+      real(wp) :: row
+      integer :: i, place, j
+
+      rounding = 0.0_wp
+      do i = 1, dofs%n
+         if (constraint%fixed(i)) cycle
+         row = 0.0_wp
+         do place = pattern%row(i), pattern%row(i + 1) - 1
+            j = pattern%col(place)
+            row = row + abs(values(place)*x(dofs%field(j), dofs%node(j)))
+         end do
+         rounding(dofs%field(i)) = rounding(dofs%field(i)) + row**2
+      end do
+      rounding(:DISPLACEMENTS) = sum(rounding(:DISPLACEMENTS))
+      rounding = ROUNDINGS*epsilon(1.0_wp)*sqrt(rounding)
+   end function rounding_of_unknowns
+
    !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in rhs.
    subroutine add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
       type(dofs_t), intent(in) :: dofs
@@ -281,8 +315,11 @@ contains
       call loads_of_water(dofs, constraint%air, rhs)
       assembly%scale = assembly%scale + abs(rhs)
       if (assembly%with_change) then
-         ! What the step changes of loads and contacts, beside that of the elements.
-         if (allocated(touched)) assembly%change = assembly%change + abs(assembly%residual - without - touched)
+         ! What the step changes of loads and contacts, beside that of the elements. An overlap that no solution has
+         ! answered yet presses with the penalty alone, which balances nothing: no more counts than the force that is
+         ! there now.
+         if (allocated(touched)) assembly%change = assembly%change + &
+            min(abs(assembly%residual - without), abs(assembly%residual - without - touched))
          where (dofs%field <= DISPLACEMENTS)
             assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
          elsewhere
@@ -414,20 +451,23 @@ contains
       end do
    end subroutine add_bodies
 
-   pure subroutine add_correction(dofs, dx, x, share)
+   pure subroutine add_correction(dofs, dx, x, share, largest)
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: dx(:)
       real(wp), intent(inout) :: x(:, :)
-      real(wp), intent(out) :: share
+      real(wp), intent(out) :: share             !< |dx|/|x| of the worst field [-].
+      real(wp), intent(out) :: largest(FIELDS)   !< |dx| of every field [m, kPa].
       real(wp) :: change(FIELDS), total(FIELDS)
       integer :: f, i
 
       change = 0.0_wp
+      largest = 0.0_wp
       do i = 1, size(x, 2)
          do f = 1, FIELDS
             if (dofs%of(f, i) == 0) cycle
             x(f, i) = x(f, i) + dx(dofs%of(f, i))
             change(f) = change(f) + dx(dofs%of(f, i))**2
+            largest(f) = max(largest(f), abs(dx(dofs%of(f, i))))
          end do
       end do
       total = norm2(x, dim=2)

@@ -7,6 +7,7 @@ import csv
 import os
 import pathlib
 
+from ._texts import text_of_bytes
 from .errors import InputError
 
 
@@ -18,13 +19,13 @@ def cells_of(line: str, mark: str = ",") -> list[str]:
 def rows_of(path: str | os.PathLike) -> list[tuple[int, list[str]]]:
     """(line, cells) of every row that is neither empty nor a comment (#), the names of the columns first."""
     try:
-        lines = pathlib.Path(path).read_text(encoding="utf-8-sig").splitlines()
+        text, _ = text_of_bytes(pathlib.Path(path).read_bytes())
     except OSError as problem:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
-    except UnicodeDecodeError as problem:
-        raise InputError(f"{path} is no text in UTF-8; save it as CSV") from problem
+    if "\0" in text:
+        raise InputError(f"{path} is no text; save it as CSV")
     return [
         (number, cells_of(line))
-        for number, line in enumerate(lines, 1)
+        for number, line in enumerate(text.splitlines(), 1)
         if line.strip() and not line.startswith("#")
     ]

@@ -13,6 +13,8 @@ import pathlib
 import re
 from ctypes import POINTER, c_char_p, c_double, c_int, c_void_p
 
+from ._texts import text_of_bytes
+
 PACKAGE = pathlib.Path(__file__).resolve().parent
 SOURCE_TREE = PACKAGE.parent.parent
 FOLDER_VARIABLE = "MUD_LIBRARY_DIR"
@@ -161,4 +163,4 @@ def text_of(function, *arguments) -> tuple[int, str]:
     """(code, text) of a function that ends in (text, len)."""
     room = ctypes.create_string_buffer(TEXT)
     code = function(*arguments, room, len(room))
-    return code, room.value.decode()
+    return code, text_of_bytes(room.value)[0]

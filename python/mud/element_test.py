@@ -15,8 +15,10 @@ import numpy as np
 
 from . import _native
 from ._native import CONSTANTS as C
+from ._texts import text_of_bytes
 from .errors import InputError, TestStopped, UnknownName
 from .material import Material
+from .namelist import quoted
 
 _DONE, _REFUSED = 0, 2
 
@@ -209,7 +211,7 @@ def run_case(case: str, folder: str | os.PathLike = ".") -> TestResult:
     library = _native.mud_triax
     place = str(pathlib.Path(folder) / "case")
     code = library.mud_triax_run(case.encode(), place.encode(), byref(handle), message, len(message))
-    sentence = message.value.decode()
+    sentence = text_of_bytes(message.value)[0]
     if code == _REFUSED or not handle:
         raise InputError(sentence)
     try:
@@ -236,7 +238,7 @@ def _table(handle: ctypes.c_void_p) -> TestResult:
         dict(zip(fields[0], values)),
         dict(zip(fields[0], fields[1])),
         dict(zip(fields[0], fields[2])),
-        remarks.value.decode().splitlines(),
+        text_of_bytes(remarks.value)[0].splitlines(),
     )
 
 
@@ -274,7 +276,7 @@ def _group(name: str, keys: Mapping[str, object]) -> str:
 
 def _value(value: object) -> str:
     if isinstance(value, (str, os.PathLike)):
-        return f"'{os.fspath(value)}'"
+        return quoted(os.fspath(value))
     if isinstance(value, (Sequence, np.ndarray)):
         return ", ".join(map(_value, value))
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else repr(float(value))

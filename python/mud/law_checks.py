@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from .law_under_test import Answer, Ended, Law, apart
+from .namelist import quoted
 
 PASS, NOTE, FAULT, UNJUDGED = "pass", "note", "fault", "not judged"
 _EPS = 1e-30
@@ -820,7 +821,7 @@ def case_of(law: Law, start: Point, path: list[np.ndarray], d_stress: np.ndarray
     kept = [*start.state, *-start.strain, round(start.time), 0.8, 1.0]
     lines = [
         "&case name = 'finding' /",
-        f"&material law = 'umat' library = '{law.library}' symbol = '{law.symbol}' nstatv = {law.n_state}",
+        f"&material law = 'umat' library = {quoted(str(law.library))} symbol = {quoted(law.symbol)} nstatv = {law.n_state}",
         f"   shear_order = '{law.shear_order}' components = {law.components}",
         *([_key("props", law.props)] if len(law.props) else []),
         "/",

@@ -17,6 +17,7 @@ from .errors import InputError, Unchangeable, fault_of
 from .points import Points, need, tangent_kind
 from .registry import parameters, states
 
+_TENSION = ", tension: tension is positive here"
 _SUCTION = states["suction"].index
 _STATE, _SLOPES = slice(6, 6 + len(states)), slice(6 + len(states), None)
 _BLOCKS = 50  # doubles of mud_blocks: 36, 6, 6, 1, 1
@@ -163,10 +164,10 @@ class Material(Points, Mapping):
         for name, value in values.items():
             entry = parameters[name]
             if isinstance(value, str):
-                if value not in entry.options:
+                if value.lower() not in entry.options:
                     allowed = ", ".join(entry.options) or "numbers"
                     raise InputError(f"{entry.name} = '{value}': {entry.meaning}; allowed: {allowed}")
-                value = entry.options[value]
+                value = entry.options[value.lower()]
             self.props[entry.index] = value
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -208,7 +209,7 @@ class Material(Points, Mapping):
     def group(self) -> str:
         """The material as a ``&material`` group of a case file: every parameter that is not the default."""
         lines = [f"   {name} = {value!r}" for name, value in self.items() if value != parameters[name].default]
-        return "\n".join(["&material", f"   name = '{self.title}'", *lines, "/", ""])
+        return "\n".join(["&material", f"   name = {namelist.quoted(self.title, namelist.LONGEST)}", *lines, "/", ""])
 
     def converted(self, factor: float) -> Material:
         """The same material in another unit of stress, ``factor`` of which make one of the present unit (0.001: MPa of kPa)."""
@@ -230,19 +231,13 @@ class Material(Points, Mapping):
         """Stress (6,) and STATEV (n_states,) of a point that begins.
 
         stress : (6,) effective stress [kPa], tension positive; a mean within p_atm/100 of zero is lifted to p_min, more
-            tension is refused.
+            tension is refused. What else is doubtful about a start (umat/README.md) is told on standard error.
         suction : p_a - p_w [kPa].
         void_ratio : [-]; None: e_0 of the material.
         saturation : [-], with hysteresis; None: on the main drying curve.
         """
         start = np.array(stress, dtype=float)
         need(start, (6,), "stress")
-        mean = float(start[:3].mean())
-        if mean > 0.01 * self["p_atm"]:
-            raise InputError(
-                f"the mean stress of the start is {mean:g}, tension: tension is positive here, and sand bears none; give "
-                f"compression with the sign minus, as {-mean:g}"
-            )
         statev = np.zeros(len(states))
         code, sentence = _native.text_of(
             _native.mud.mud_init,
@@ -256,6 +251,8 @@ class Material(Points, Mapping):
         )
         if code != 0:
             raise fault_of(code, sentence)
+        if _TENSION in sentence:  # the library only warns
+            raise InputError(sentence.removeprefix("warning: "))
         return start, statev
 
     def update(

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Material files: one group ``&material`` with ``key = value`` lines; ``!`` begins a comment."""
+"""Material files: one group ``&material`` with ``key = value`` lines; ``!`` begins a comment.
+
+Read as mud_triax reads them: names in letters of either size, any encoding, a text between quotes of either kind, inside
+which the same quote is written twice.
+"""
 
 from __future__ import annotations
 
@@ -7,51 +11,55 @@ import os
 import pathlib
 import re
 
+from ._texts import text_of_bytes
 from .errors import InputError
 
-TOKEN = re.compile(r"""\s*(?:(?P<word>[^\s=,!&/'"]+)|(?P<text>'[^']*'|"[^"]*")|(?P<mark>[=&/])|,)""")
+TOKEN = re.compile(
+    r"""[\s,]+ | (?P<comment>!.*) | (?P<mark>[=&/]) | (?P<text>'(?:[^']|'')*'|"(?:[^"]|"")*") | (?P<open>['"])
+    | (?P<word>[^\s,=!&/'"]+)""",
+    re.VERBOSE,
+)
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([edED][+-]?\d+)?")
+TEXTS = ("name", "reference")
+LONGEST = 200  # bytes of a name or reference that is written; the readers take 256
+
+
+def quoted(text: str, longest: int | None = None) -> str:
+    """A text as a value that every reader takes back: in one line, between quotes that it does not have or has twice."""
+    plain = " ".join(text.splitlines()).encode()[:longest].decode(errors="ignore")
+    mark = '"' if "'" in plain and '"' not in plain else "'"
+    return mark + plain.replace(mark, 2 * mark) + mark
 
 
 def read_material(path: str | os.PathLike) -> dict[str, float | str]:
     """Entries of a material file by name: numbers, words, and the texts ``name`` and ``reference``."""
     path = pathlib.Path(path)
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        text, _ = text_of_bytes(path.read_bytes())
     except OSError as problem:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
-    tokens = [
-        (number, match) for number, line in enumerate(lines, 1) for match in TOKEN.finditer(_without_comment(line))
-    ]
+    tokens = []
+    for number, line in enumerate(text.splitlines(), 1):
+        for match in TOKEN.finditer(line):
+            if match["open"]:
+                raise InputError(f"{path}:{number}: a quoted text is not closed; add {match['open']}")
+            tokens += [(number, match)] if match.lastgroup not in (None, "comment") else []
     marks = [match["mark"] for _, match in tokens]
-    if marks.count("&") != 1 or marks[:1] != ["&"] or tokens[1][1]["word"] != "material" or marks[-1] != "/":
+    if marks.count("&") != 1 or marks[0] != "&" or (tokens[1][1]["word"] or "").lower() != "material" or marks[-1] != "/":
         raise InputError(f"{path}: a material file holds exactly one group, &material ... /")
-    entries: dict[str, float | str] = {}
-    inner = [token for token in tokens[2:-1] if token[1].group().strip() != ","]
+    inner = tokens[2:-1]
     if len(inner) % 3:
         raise InputError(f"{path}: the group &material is not made of key = value lines")
+    entries: dict[str, float | str] = {}
     for (number, key), (_, equals), (_, value) in zip(inner[::3], inner[1::3], inner[2::3]):
         if key["word"] is None or equals["mark"] != "=" or value["mark"]:
             raise InputError(f"{path}:{number}: not a line key = value")
-        if key["word"] in entries:
-            raise InputError(f"{path}:{number}: {key['word']} is given twice")
-        entries[key["word"]] = value["text"][1:-1] if value["text"] else _number(value["word"])
+        name = key["word"]
+        if name.lower() in map(str.lower, entries):
+            raise InputError(f"{path}:{number}: {name} is given twice")
+        word = value["text"][1:-1].replace(2 * value["text"][0], value["text"][0]) if value["text"] else value["word"]
+        if name.lower() in TEXTS:
+            entries[name.lower()] = word
+        else:
+            entries[name] = float(word.lower().replace("d", "e")) if NUMBER.fullmatch(word) else word
     return entries
-
-
-def _without_comment(line: str) -> str:
-    quoted = ""
-    for i, letter in enumerate(line):
-        if quoted:
-            quoted = "" if letter == quoted else quoted
-        elif letter in "'\"":
-            quoted = letter
-        elif letter == "!":
-            return line[:i]
-    return line
-
-
-def _number(word: str) -> float | str:
-    try:
-        return float(word.lower().replace("d", "e"))
-    except ValueError:
-        return word

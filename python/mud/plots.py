@@ -107,7 +107,7 @@ def values_of(run: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     counted on from row to row."""
     values = run[name]
     if name == "cycle":
-        return _counted(values)
+        return _counted(run["stage"] if "stage" in run else np.zeros(len(values)), values)
     if name == "eps_a":
         values = -np.expm1(-values)
     elif name == "eps_v":
@@ -115,12 +115,12 @@ def values_of(run: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     return _LABELS[name][1] * values
 
 
-def _counted(cycle: np.ndarray) -> np.ndarray:
-    """The number of the cycle as a count that grows over its rows and is whole at its end."""
+def _counted(stage: np.ndarray, cycle: np.ndarray) -> np.ndarray:
+    """The number of the cycle as a count that grows over its rows in each stage and is whole at its end."""
     counted = cycle.astype(float)
-    for number in np.unique(cycle[cycle > 0]):
-        rows = np.flatnonzero(cycle == number)
-        counted[rows] = number - 1 + np.arange(1, len(rows) + 1) / len(rows)
+    for place in {(one, number) for one, number in zip(stage, cycle) if number > 0}:
+        rows = np.flatnonzero((stage == place[0]) & (cycle == place[1]))
+        counted[rows] = place[1] - 1 + np.arange(1, len(rows) + 1) / len(rows)
     return counted
 
 

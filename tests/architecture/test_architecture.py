@@ -81,14 +81,15 @@ def module_variables(text):
 
 
 def remembered(files):
-    """The exception from the rule above: the one variable of mud_once stands in first_time and nowhere else."""
+    """The exception from the rule above: mud_once's variable decides on sentences and threads alone."""
     text = next((file.read_text(encoding="utf-8") for file in files if file.stem == "mud_once"), "")
     wrong = [] if len(module_variables(text)) == 1 else [f"mud_once: module variables {module_variables(text)}"]
-    # Whether a sentence is new, and how many increments the last sentence of a process counts: nothing else.
-    bodies = re.findall(r"(?:function|subroutine) (first_time|report_at_exit|write_last_sentence)\b(.*?)"
-                        r"end (?:function|subroutine) \1$", text, re.DOTALL | re.MULTILINE)
+    # Whether a sentence is new, how many increments the last sentence of a process counts, and which process used
+    # threads: nothing else.
+    bodies = re.findall(r"(?:function|subroutine) (first_time|report_at_exit|write_last_sentence|may_use_threads)\b"
+                        r"(.*?)end (?:function|subroutine) \1$", text, re.DOTALL | re.MULTILINE)
     uses_of = [len(re.findall(r"\btold\(", part)) for part in (text, "".join(body for _, body in bodies))]
-    return wrong + ([] if uses_of[0] == uses_of[1] + 1 else ["mud_once: told is used outside first_time and reminders"])
+    return wrong + ([] if uses_of[0] == uses_of[1] + 1 else ["mud_once: told is used outside sentences and threads"])
 
 
 def not_strict(text):

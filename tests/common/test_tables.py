@@ -43,10 +43,14 @@ def test_is_explained():
         check(f"{what} is explained", all(word in answer for word in words), answer)
     answer = told("1,2\n", tables.rows, header_in_comment=True)
     check("columns that no comment names are explained", "no comment with the names" in answer, answer)
-    path.write_bytes(b"p,q\n\xff\xfe,1\n")
+    path.write_bytes("p,q\n1,2\n".encode("utf-16"))
     try:
         tables.rows(path)
         answer = ""
     except tables.TableError as problem:
         answer = str(problem)
     check("what is no text is explained", "table.csv is not a text" in answer, answer)
+    for encoding in ("utf-8-sig", "latin-1"):
+        path.write_bytes("p\n1.5\n# title: Größe\n".encode(encoding))
+        check(f"letters in {encoding} are read", tables.numbers(path) == [{"p": 1.5}]
+              and tables.comments(path) == ["title: Größe"], tables.comments(path))

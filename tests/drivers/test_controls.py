@@ -176,6 +176,57 @@ def test_strain_cycles_turn_at_the_amplitude():
     check("double amplitude stops a stage", any("double amplitude 0.02 reached" in note for note in notes), notes)
 
 
+def test_a_reversal_belongs_to_the_cycle_that_it_ends():
+    # Rows at reversals alone: +A and -A carry the number of their cycle, the way back that of the last one.
+    far = ", output_interval = 1e6"
+    for stage, name, size in (("control = 'drained', cycle_by = 'eps_a', amplitude = 5e-4", "eps_a", 5e-4),
+                              ("control = 'undrained', cycle_by = 'q', amplitude = 12, increment = 1e-5", "q", 12)):
+        rows, _ = run(f"{stage}, cycles = 3{far}")
+        found = [(r["cycle"], round(r[name]/size, 3)) for r in rows]
+        check(f"both reversals carry the number of the cycle, led by {name}",
+              found == [(0, 0), (1, 1), (1, -1), (2, 1), (2, -1), (3, 1), (3, -1), (3, 0)], found)
+    # Stopped just where a cycle ends: begun backwards, loose sand has its largest r_u so far at the second turn.
+    stage = "control = 'undrained', cycle_by = 'q', amplitude = -15, cycles = 6, increment = 1e-5" + far
+    loose = "p_eff = 100, void_ratio = 0.9"
+    rows, _ = run(stage, initial=loose)
+    ratio = rows[6]["r_u"]
+    rows, notes = run(f"{stage}, stop_r_u = {ratio!r}", initial=loose)
+    told = [note for note in notes if "pore pressure ratio" in note]
+    check("a stop at a reversal is told in the cycle that it ends", len(rows) == 7 and rows[-1]["cycle"] == 3
+          and told[0].endswith("reached in cycle 3"), (rows[-1], told))
+
+
+def test_a_way_of_no_length_is_passed_over():
+    # The first turn is where the sample stands: the cycles begin with the way to the other turn.
+    rows, _ = run("control = 'drained', cycle_by = 'eps_a', amplitude = 4e-4, centre = -4e-4, cycles = 2, "
+                  "output_interval = 1e6")
+    check("the other turns are there", [(r["cycle"], round(r["eps_a"]*1e4, 6)) for r in rows]
+          == [(0, 0), (1, -8), (2, 0), (2, -8), (2, -4)], rows)
+
+
+def test_a_stage_of_no_length_has_its_row():
+    # Asked for what is there already: every stage ends in a row, and the rows of the others keep their numbers.
+    rows, _ = run("control = 'isotropic', p_end = 100.0", "control = 'drained', eps_a_end = 0.004",
+                  "control = 'drained', eps_a_end = 0.004", "control = 'undrained', eps_a_end = 0.006")
+    ends = [i for i, (a, b) in enumerate(zip(rows, rows[1:])) if a["stage"] != b["stage"]] + [len(rows) - 1]
+    check("four stages and the start have their last rows", [rows[i]["stage"] for i in ends] == [0, 1, 2, 3, 4], ends)
+    check("where they should be", [round(rows[i]["eps_a"], 12) for i in ends] == [0, 0, 0.004, 0.004, 0.006], ends)
+    moved = [name for name in rows[0] if rows[ends[3]][name] != rows[ends[2]][name]]
+    check("the row of a stage of no length is that before it", set(moved) == {"stage", "control_error"}, moved)
+
+
+def test_a_title_in_latin_1_comes_back():
+    case = ("&case title = 'Größe ''M'' der Prüfung' /\n&material /\n&initial p_eff = 50 void_ratio = 0.8 /\n"
+            "&stage control = 'drained' eps_a_end = 1e-3 /\n")
+    (work / "old.nml").write_bytes(case.encode("latin-1"))
+    done = subprocess.run([triax, work / "old.nml", "--quiet", "--output", work / "old.csv"], capture_output=True)
+    check("it runs", done.returncode == 0, done.stderr)
+    told = tables.comments(work / "old.csv")
+    check("and scripts read it", "title: Größe 'M' der Prüfung" in told, told)
+    done = subprocess.run([sys.executable, root / "drivers/plot_case.py", work / "old.csv"], capture_output=True)
+    check("a picture is drawn of it", done.returncode == 0, done.stderr)
+
+
 def test_three_stages():
     # Stages follow one another.
     rows, _ = run("control = 'k0', sigma_a_end = 200.0", "control = 'undrained', eps_a_end = 0.02",

@@ -95,7 +95,7 @@ def test_umat_writes_nothing_unasked(text):
 
     # Were a bit of any number lost, or did the increment end in another way, the copy would differ.
     check("the repetition has every bit", lines(work / "copy.nml") == lines(saved), "the copy differs")
-    check("cutting helps", re.search(r"1 increments \([1-9]\d* cuts\)", done.stdout), done.stdout)
+    check("cutting helps", re.search(r"1 increments, [1-9]\d* cuts", done.stdout), done.stdout)
 
     # By umat_, for a folder named in the environment: the same file but for the remark, and one of each failure.
     asked = folder("asked")
@@ -181,7 +181,7 @@ def test_an_edited_number_is_obeyed(text):
     # The file is a case: any number may be edited.
     (work / "edited.nml").write_text(re.sub(r"max_substeps = .*", "max_substeps = 1e5", text), encoding="utf-8")
     done = repeated("edited.nml", "none.nml")
-    check("an edited number is obeyed", done.returncode == 0 and "(0 cuts)" in done.stdout and
+    check("an edited number is obeyed", done.returncode == 0 and "cut" not in done.stdout.partition("work")[2] and
           not (work / "none.nml").exists(), done.stdout + done.stderr)
     for name, wrong, words in (
             ("a state with a variable too few", re.sub(r"\n.*! layout", "", text), ["state_variables has"]),

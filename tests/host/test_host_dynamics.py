@@ -175,3 +175,26 @@ def test_pressures_of_tied_sides():
         h, _ = run(flow.format(words), f"flow_{same}")
         check(f"pressures of tied sides {words}", (h["top.p_w"][-1] == h["corner.p_w"][-1]) is np.bool_(same)
               and h["top.p_w"][-1] > 0, (h["top.p_w"][-1], h["corner.p_w"][-1]))
+
+
+def test_given_steps_end_at_the_breaks_that_they_would_jump_over():
+    # Two pulses of 9 and 5 ms under steps of 20 ms, statically: the peaks press the column of 4 m together by
+    # 5 kPa/2.4e4 kPa (M of E = 2e4, nu = 0.25) times 4 m, and what follows goes on in steps as given.
+    text = (column() + "&history name = 'h' times = 0, 0.004, 0.009, 0.05, 0.052, 0.055 values = 0, 1, 0, 0, -1, 0 /\n"
+            "&stage name = 's' analysis = 'static' duration = 0.1 dt = 0.02 /\n&fix group = 'left' field = 'u_r' /\n"
+            "&fix group = 'right' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
+            "&load group = 'top' kind = 'pressure' value = 5 history = 'h' /\n")
+    rows, _ = run(text, "pulses")
+    times = [0, 0.004, 0.009, 0.029, 0.049, 0.05, 0.052, 0.055, 0.075, 0.095, 0.1]
+    check("times of the steps", len(rows["time"]) == len(times) and np.allclose(rows["time"], times, atol=1e-12),
+          rows["time"])
+    by_time = dict(zip(np.round(rows["time"], 6), rows["top.u_z"]))
+    for time, share in ((0.004, -1), (0.009, 0), (0.052, 1), (0.055, 0)):
+        check(f"the peak at {time} s", abs(by_time[time] - share*5/2.4e4*4) < 1e-12, by_time)
+    # A support that acts within a step alone; a ramp that a step does not pass is no reason for a shorter one.
+    kept = text.replace("&load", "&fix group = 'top' field = 'u_z' value = 0.001 from = 0.062 until = 0.07 /\n&load")
+    rows, _ = run(kept, "support")
+    check("a support of 8 ms is met", np.any(np.abs(rows["top.u_z"] - 0.001) < 1e-12), (rows["time"], rows["top.u_z"]))
+    ramp = text.replace("0, 0.004, 0.009, 0.05, 0.052, 0.055 values = 0, 1, 0, 0, -1, 0", "0, 0.05 values = 0, 1")
+    rows, _ = run(ramp, "ramp")
+    check("steps of a ramp stay", len(rows["time"]) == 6, rows["time"])

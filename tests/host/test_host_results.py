@@ -60,7 +60,7 @@ HELD = "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z'
 
 # A metre of soil of k/eta_w 2e-4 m2/(kPa s), water of 10 kPa/m, the pressure at its base given, at rest after 1e6 s.
 # What follows is Darcy's law over one metre: the flow is 2e-4 times the difference of p_w + 10 z.
-COLUMN = """&scene name = 'column' geometry = 'plane_strain' fields = '{fields}' gravity = 10 /
+COLUMN = """&scene name = 'column' geometry = 'plane_strain' fields = '{fields}' pressures = 'quadratic' gravity = 10 /
 &mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
 &elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
 &fluids k_w = 1e15 /

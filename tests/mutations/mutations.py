@@ -323,7 +323,7 @@ REGIONS = [
      (PLACES, "if (.not. region%with_w) return\n      mixture", "if (.not. domain%with_w) return\n      mixture")),
     ("geostatic stress of dry soil as under water", (START, "if (region%with_w) weight = weight", "if (m%with_w) weight = weight")),
     ("geostatic stress of dry soil less the water of the scene",
-     (START, "p_w = merge(water(initial, z), 0.0_wp, region%with_w)", "p_w = water(initial, z)")),
+     (START, "p_w = merge(water(initial, x(2)), 0.0_wp, region%with_w)", "p_w = water(initial, x(2))")),
     ("every region has the material of the first one", (BUILDER, "source=materials(k)%law", "source=materials(1)%law")),
     ("every point has the state of the first region",
      (PLACES, "domain%regions(domain%region_of(e))%law%n_state", "domain%regions(1)%law%n_state")),

@@ -128,7 +128,8 @@ def test_a_good_table_is_read():
         "call the column eps_a",
     )
     hears("a strain that falls", HEAD + "".join([*ROWS[:2], ROWS[3], ROWS[2]]), ":5", "0.2 to 0.1", "one way")
-    hears("a row that is there twice", HEAD + "".join([*ROWS[:2], *ROWS[1:]]), ":4", "twice")
+    check("a row that is there twice is read once", sentence(HEAD + "".join([*ROWS[:2], *ROWS[1:]])) == ""
+          and len(read_table(FILE, "drained")[0].lines) == len(ROWS))
     hears( "q with the sign swapped", HEAD + "".join(r.replace(",200,", ",-200,").replace(",250,",
           ",-250,").replace(",240,", ",-240,") for r in ROWS), "sign swapped", )
     hears("eps_v with the sign swapped", HEAD + "".join(r.replace(",-", ",") for r in ROWS), "eps_v", "swapped")

@@ -5,6 +5,7 @@ import ctypes
 import inspect
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -619,6 +620,52 @@ def test_material_takes_a_set_by_its_name_and_replaces_that_of_the_case():
     for name in mud.materials():
         material = mud.Material(name)
         check(f"material {name} is complete", material.title and np.all(np.isfinite(material.props)))
+
+
+FORKS = """
+import multiprocessing, os, sys
+import numpy as np
+import mud
+
+sand, n = mud.Material("toyoura"), 40
+stress = np.tile([-90.0, -70.0, -80.0, 4.0, 0.0, 0.0], (n, 1))*np.linspace(0.5, 2.0, n)[:, None]
+begun = sand.init_batch(stress, np.full(n, 5.0))
+strain = np.linspace(-4e-4, 4e-4, 6*n).reshape(n, 6)
+
+def update(threads):
+    return sand.update_batch(begun.stress, begun.statev, strain, tangent="consistent", threads=threads).stress
+
+if sys.argv[1] == "threads":
+    update(3)
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    forked = pool.map(update, [2, 3, 1, 0])
+child = os.fork()
+if child == 0:
+    if os.fork() == 0:   # and a child of that
+        os._exit(0 if np.array_equal(update(2), forked[0]) else 1)
+    os._exit(os.waitstatus_to_exitcode(os.wait()[1]))
+assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+assert all(np.array_equal(one, update(3)) for one in forked)
+"""
+
+
+def test_a_batch_in_a_forked_process_ends_with_the_same_answer():
+    # OpenMP's threads stay in the parent: a child that waited for them would never end.
+    for name in ("threads", "none"):
+        process = subprocess.Popen(
+            [sys.executable, "-W", "ignore", "-c", FORKS, name],   # Python 3.12 warns of forks beside threads
+            env={**os.environ, "PYTHONPATH": str(root / "python")},
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        try:
+            said = process.communicate(timeout=60)[1]
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            said = process.communicate()[1] + "it did not end within 60 s"
+        check(f"children of a process that used {name} update points bit by bit as it does",
+              process.returncode == 0 and said == "", said)
 
 
 def test_public_functions_have_type_hints_and_a_docstring():

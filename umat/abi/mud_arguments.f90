@@ -3,7 +3,7 @@
 module mud_arguments
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use mud_host_increment, only: suction_change
-   use mud_kinds, only: wp
+   use mud_kinds, only: wp, NOTHING
    use mud_params, only: completed, is_length
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, P_SHEAR_ORDER, &
       S_LAYOUT, S_SUCTION
@@ -19,8 +19,6 @@ module mud_arguments
 
    !> DROT may differ from a rotation by this, rounding of single-precision hosts [-].
    real(wp), parameter :: ORTHOGONAL = 1.0e-6_wp
-   !> Memory that was never set often reads as a number far below any physical one [-]: it counts as 0.
-   real(wp), parameter :: NOTHING = 1.0e-100_wp
    !> PREDEF may differ from the suction of STATEV by this share of the larger one, or of an atmosphere: rounding of
    !> single-precision hosts, and of a suction that returns to zero [-, kPa].
    real(wp), parameter :: SAME_SUCTION = 1.0e-6_wp, ATMOSPHERE = 100.0_wp
@@ -106,7 +104,7 @@ contains
       call c_f_pointer(drot, matrix, [9])
       do i = 1, 9
          given(i) = matrix(i)
-         if (within(given(i), NOTHING)) given(i) = 0.0_wp
+         if (within(given(i), NOTHING)) given(i) = 0.0_wp   ! memory that was never set often reads so
          if (within(given(i), 1.0_wp + ORTHOGONAL)) cycle
          status = fail(MUD_BAD_INPUT, ON_ROTATION, i, given(i), -1.0_wp, 1.0_wp)
          return

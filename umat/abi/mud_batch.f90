@@ -1,12 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Many points of several materials: mud_init_points, mud_update_points and mud_saturation_points of mud.h.
 module mud_batch
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer, c_loc
    use mud_host_increment, only: host_increment, kind_of, is_present, is_total
    use mud_kernel, only: report_t, output_t, kernel_begin, failed_report
    use mud_kinds, only: wp
+   use mud_once, only: may_use_threads
    use mud_params, only: params_t
    use mud_prepared, only: prepared_t, find_materials
+   use mud_refusals, only: place_t, remark_on_begun, remark_on_void_ratio
    use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
    use mud_retention, only: saturation_t, saturation
    use mud_retention_point, only: state_saturation
@@ -216,6 +218,7 @@ contains
       logical, intent(out) :: raised
       type(report_t), intent(out) :: report
       real(wp) :: stress(6), begun(6), statev(NSTATV), suction, e, preset
+      integer(c_int), target :: number
       integer :: n
 
       raised = .false.
@@ -230,6 +233,8 @@ contains
       if (report%status /= MUD_OK) return
       n = min(n, statev_size(par%options_t))
       raised = any(abs(begun - stress) > 0.0_wp)
+      number = j - 1
+      call remark_on_begun(par, stress, statev(:n), place_t('mud_init_points', point=c_loc(number)))
       if (total) begun = total_stress(begun, 0.0_wp, statev(S_SATURATION), suction)
       arrays%stress1(:, j) = begun
       arrays%statev1(1:n, j) = statev(1:n)
@@ -262,6 +267,7 @@ contains
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
       real(wp) :: strain(6), suction
+      integer(c_int), target :: number
 
       strain = 0.0_wp
       if (associated(arrays%strain)) strain = arrays%strain(:, j)
@@ -270,6 +276,8 @@ contains
       call host_increment(par, arrays%stress0(:, j), arrays%statev0(:, j), strain, suction, int(tangent), &
                           output, report)
       if (report%status /= MUD_OK) return
+      number = j - 1
+      call remark_on_void_ratio(output%statev, place_t('mud_update_points', point=c_loc(number)))
       if (associated(arrays%stress1)) arrays%stress1(:, j) = output%stress
       if (associated(arrays%statev1)) arrays%statev1(1:output%n_statev, j) = &
          output%statev(1:output%n_statev)
@@ -358,12 +366,15 @@ contains
       place = value
    end subroutine give_summary
 
-   !> The number asked for; 0 or less means what OpenMP would take.
+   !> The number asked for; 0 or less means what OpenMP would take. 1 in a process that may not use threads.
    integer function thread_count(threads)
       !$ use omp_lib, only: omp_get_max_threads
       integer(c_int), intent(in) :: threads
 
       thread_count = max(threads, 1)
       !$ if (threads <= 0) thread_count = omp_get_max_threads()
+      if (thread_count > 1) then
+         if (.not. may_use_threads()) thread_count = 1
+      end if
    end function thread_count
 end module mud_batch

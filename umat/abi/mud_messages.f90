@@ -83,7 +83,13 @@ contains
       case (MUD_BAD_STATE)
          if (report%index < 1 .or. report%index > NSTATV) return
          text = 'state variable '//trim(statev_name(report%index))//' (STATEV '//trim(whole(report%index))//') is '// &
-                trim(number(report%value))//trim(span(lower, upper))//': '
+                trim(number(report%value))
+         if (within_range(report)) then
+            text = trim(text)//', but it is a count and whole: numbers of two states were averaged or '// &
+                   'interpolated, which makes no state; keep STATEV of every point as the last update wrote them'
+            return
+         end if
+         text = trim(text)//trim(span(lower, upper))//': '
          if (report%index == S_LAYOUT .and. is_zero(report%value)) then
             text = trim(text)//' mud_init or mud_init_points begins a point'
          else
@@ -218,6 +224,14 @@ contains
       end select
       if (report%index >= 1 .and. report%index <= 6) text = trim(text)//' '//COMPONENT(report%index)
    end function quantity
+
+   !> True of a count that is refused because it is not whole. A NaN is not compared, for it would trap.
+   pure logical function within_range(report)
+      type(report_t), intent(in) :: report
+
+      within_range = is_finite(report%value)
+      if (within_range) within_range = report%value > report%lower .and. report%value < report%upper
+   end function within_range
 
    !> A NaN is not compared, for it would trap.
    pure logical function is_zero(value)

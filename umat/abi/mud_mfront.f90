@@ -9,7 +9,7 @@ module mud_mfront
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
-   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked
+   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked
    use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV => NSTATV_WITHOUT_HYSTERESIS, &
       S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation
@@ -184,6 +184,7 @@ contains
       if (unsaturated) then
          if (report%status /= MUD_OK) return
       end if
+      call remark_on_start(par, stress, point%state0, suction(1), place_t(DOOR))
       if (predicts) then
          if (request < -1.5_wp) then
             call kernel_tangent(par, stress, point%state0, strain, suction(1), suction(2) - suction(1), output, report)
@@ -201,7 +202,7 @@ contains
       end if
       if (.not. has_past(point%state0)) call remark_on_props(completed(point%props), place_t(DOOR))
       if (.not. predicts) then
-         call remark_on_pressure(output%stress, place_t(DOOR))
+         call remark_on_end(output%stress, output%statev, place_t(DOOR))
          point%state1(1:NSTATV) = output%statev(:NSTATV)
          stress = output%stress
          if (unsaturated) stress = total_stress(stress, 0.0_wp, output%statev(S_SATURATION), suction(2))

@@ -1,23 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> Which messages umat_ has already printed: the one thing that the library remembers between calls. A message of each
-!> kind goes to standard error once a process, whichever thread comes first. Nothing else reads the memory, so no answer
-!> depends on it. Compiled with OpenMP for its atomic operations alone, which need no run-time library; without OpenMP
-!> two threads that fail at the same instant may both print. A forked process inherits what was said before; the ranks
-!> of MPI are processes of their own.
+!> Which messages have been printed, and which process has used threads: all that the library remembers between calls.
+!> A message of each kind goes to standard error once a process, whichever thread comes first. Nothing else reads the
+!> memory, so no answer depends on it. Compiled with OpenMP for its atomic operations alone, which need no run-time
+!> library; without OpenMP two threads that fail at the same instant may both print. A forked process inherits what was
+!> said before; the ranks of MPI are processes of their own.
 module mud_once
    use, intrinsic :: iso_c_binding, only: c_char, c_funloc, c_funptr, c_int, c_size_t
    use, intrinsic :: iso_fortran_env, only: int32
    implicit none (type, external)
    private
-   public :: first_time, write_message, report_at_exit, environment_is, KINDS
+   public :: first_time, write_message, report_at_exit, environment_is, may_use_threads, KINDS
 
    integer, parameter :: BITS = 31, WORDS = 700   !< Bits of a word in use (the sign is left alone), and words.
    integer, parameter :: KINDS = WORDS*BITS       !< Sentences are numbered from 0 to KINDS - 1.
    character(*), parameter :: SILENCER = 'MUD_MESSAGES'
    integer(c_int), parameter :: STANDARD_ERROR = 2
    integer, parameter :: SPOILED = WORDS          !< Place of a number: how many increments were answered with NaN.
-   !> One bit a kind, and behind them SPOILED; see the head of the module.
-   integer(int32) :: told(0:WORDS) = 0
+   integer, parameter :: THREADED = WORDS + 1     !< Place of the process that used threads, 0: none yet.
+   !> One bit a kind, and behind them SPOILED and THREADED; see the head of the module.
+   integer(int32) :: told(0:WORDS + 1) = 0
 
    interface
       !> The system's: one call for a whole line, so that the lines of threads and processes do not mix.
@@ -27,6 +28,11 @@ module mud_once
          character(kind=c_char), intent(in) :: text(*)
          integer(c_size_t), value :: n
       end function c_write
+
+      !> The system's: number of this process.
+      integer(c_int) function c_getpid() bind(c, name='getpid')
+         import :: c_int
+      end function c_getpid
 
       !> C's: a procedure that the process calls when it ends.
       integer(c_int) function c_atexit(procedure_) bind(c, name='atexit')
@@ -88,6 +94,20 @@ contains
                  trim(number)//'. Unless the host has repeated them with smaller ones, its results from the first '// &
                  'of them on (see above) are no results')
    end subroutine write_last_sentence
+
+   !> True if this process may use threads, as it is then taken to do. False in one that was forked from a process that
+   !> used them: OpenMP would wait for ever for the threads, which stayed behind.
+   logical function may_use_threads()
+      integer(int32) :: before, here
+
+      here = int(c_getpid(), int32)
+      !$omp atomic read
+      before = told(THREADED)
+      may_use_threads = before == 0 .or. before == here
+      if (before /= 0) return
+      !$omp atomic write
+      told(THREADED) = here
+   end function may_use_threads
 
    !> True if an environment variable has this value. False where it is not set or longer than 32 characters.
    logical function environment_is(name, value)

@@ -2,11 +2,13 @@
 !> One point for a C host: mud_init, mud_update and mud_trace_increment of mud.h.
 module mud_one_point
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
+   use mud_advice, only: doubts_on_start, advice_on_start, ADVICE_LENGTH
    use mud_host_increment, only: host_increment, kind_of, is_present
    use mud_kernel, only: report_t, output_t, kernel_begin, failed_report, copy_statev
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_prepared, only: prepared_t, find_prepared
+   use mud_refusals, only: place_t, remark_on_begun, remark_on_void_ratio
    use mud_registry, only: NSTATV_WITHOUT_HYSTERESIS, S_SATURATION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
@@ -31,28 +33,38 @@ module mud_one_point
 contains
    !> Begins a point, as kernel_begin: tension positive, stress and suction in the unit of p_atm, void ratio and
    !> saturation [-]. MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, or the code of kernel_begin; on an error nothing but text is
-   !> written.
+   !> written. Text of a start that raises a doubt is a warning.
    integer(c_int) function mud_init(storage, stress, suction, void_ratio, saturation, statev, n_statev, text, len) &
       bind(c, name='mud_init')
       type(c_ptr), value :: storage, stress, statev, text
       integer(c_int), value :: n_statev, len
       real(c_double), value :: suction, void_ratio, saturation
+      integer :: doubt
       type(prepared_t), pointer :: material
       real(c_double), pointer, contiguous :: stress_in(:), statev_in(:)
       type(mud_status_t) :: status
       type(report_t) :: report
+      character(ADVICE_LENGTH + 9) :: sentence
+      real(wp) :: given(6)
 
       call find_prepared(storage, material, status)
       if (.not. (c_associated(stress) .and. c_associated(statev))) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       if (status%code == MUD_OK) then
          call c_f_pointer(stress, stress_in, [6])
          call c_f_pointer(statev, statev_in, [max(n_statev, 0)])
+         given = stress_in
          call kernel_begin(material%par, stress_in, suction, void_ratio, statev_in, report, saturation)
       else
          report = failed_report(status)
       end if
       mud_init = report%status
-      call put(report_text(report), text, len)
+      sentence = report_text(report)
+      if (mud_init == MUD_OK) then
+         doubt = findloc(doubts_on_start(material%par, given, statev_in), .true., dim=1)
+         if (doubt > 0) sentence = 'warning: '//advice_on_start(material%par, given, statev_in, doubt)
+         call remark_on_begun(material%par, given, statev_in, place_t('mud_init'))
+      end if
+      call put(sentence, text, len)
    end function mud_init
 
    !> One increment as host_increment has it, see mud.h: tension positive, engineering shear, stress in the unit of
@@ -74,6 +86,7 @@ contains
          call host_increment(start%material%par, start%stress, start%statev, start%d_strain, suction, tangent, output, &
                              report)
          if (report%status == MUD_OK) then
+            call remark_on_void_ratio(output%statev, place_t('mud_update'))
             if (.not. is_present(tangent)) call give_state(output, stress1, statev1)
             if (c_associated(blocks)) call give_blocks(output, blocks)
          end if

@@ -5,24 +5,27 @@
 module mud_refusals
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_null_ptr, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_advice, only: advice_on, ADVICE_LENGTH
-   use mud_arguments, only: suction_t, integer_at, SUCTION_CONTRADICTS, ARGUMENT_NAMES
-   use mud_kernel, only: report_t
+   use mud_advice, only: advice_on, doubts_on_start, advice_on_start, is_too_loose, advice_on_void_ratio, &
+      ADVICE_LENGTH, START_DOUBTS, TOO_LOOSE
+   use mud_arguments, only: suction_t, has_past, integer_at, SUCTION_CONTRADICTS, ARGUMENT_NAMES
+   use mud_kernel, only: report_t, kernel_begin
    use mud_kinds, only: wp
    use mud_messages, only: report_text, failure_name, number, MESSAGE_LENGTH
    use mud_once, only: first_time, write_message, report_at_exit, environment_is
-   use mud_registry, only: NPROPS, P_TANGENT
+   use mud_params, only: params_t
+   use mud_registry, only: NPROPS, NSTATV, P_TANGENT, S_VOID_RATIO, S_SATURATION
    use mud_save, only: write_increment, PATH_LENGTH
-   use mud_status, only: MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
+   use mud_status, only: MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: KEEP_VARIABLE, place_t, refuse, say_refusal, remark_on_suction, remark_on_props, remark_on_pressure, &
-             remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
+   public :: KEEP_VARIABLE, place_t, refuse, say_refusal, remark_on_suction, remark_on_props, remark_on_start, &
+             remark_on_begun, remark_on_end, remark_on_void_ratio, remark_on_late_start, remark_on_rotation, &
+             remark_on_green_strain, save_if_asked
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
-      character(9) :: door = 'umat_'   !< Which of the library's entries was called.
+      character(17) :: door = 'umat_'   !< Which of the library's entries was called.
       type(c_ptr) :: step = c_null_ptr, increment = c_null_ptr, element = c_null_ptr, point = c_null_ptr
    end type place_t
 
@@ -38,7 +41,8 @@ module mud_refusals
    integer, parameter :: SUBJECTS = 9, ENTRIES = 128, CODES = 17
    integer, parameter :: FIRST_REMARK = CODES*SUBJECTS*ENTRIES   !< Remarks follow the failures.
    integer, parameter :: NOT_SAVED = FIRST_REMARK, ON_PROPS_UNITS = FIRST_REMARK + 3, ON_PRESSURE = FIRST_REMARK + 4, &
-                         ON_LATE_START = FIRST_REMARK + 5, ON_TURN = FIRST_REMARK + 6, ON_GREEN = FIRST_REMARK + 7
+                         ON_LATE_START = FIRST_REMARK + 5, ON_TURN = FIRST_REMARK + 6, ON_GREEN = FIRST_REMARK + 7, &
+                         BEFORE_STARTS = FIRST_REMARK + 7   !< The doubts about a start follow it.
 contains
    !> Answers a host whose increment is refused. STATEV stays as it is. Pointers may be NULL; the report
    !> has a status other than MUD_OK.
@@ -199,13 +203,63 @@ contains
       if (first_time(ON_PROPS_UNITS)) call remark(advice, place)
    end subroutine remark_on_props
 
+   !> Says what is doubtful about a point that an update is about to begin; nothing about one that has begun, or cannot.
+   !> Arguments and units as in kernel_point.
+   subroutine remark_on_start(par, stress, statev, suction, place)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: stress(6), statev(:), suction
+      type(place_t), intent(in) :: place
+      type(report_t) :: report
+      real(wp) :: begun(6), filled(NSTATV)
+
+      if (has_past(statev)) return
+      begun = stress
+      call kernel_begin(par, begun, suction, statev(S_VOID_RATIO), filled(:size(statev)), report, &
+                        merge(statev(S_SATURATION), 0.0_wp, par%hysteresis))
+      if (report%status == MUD_OK) call remark_on_begun(par, stress, filled, place)
+   end subroutine remark_on_start
+
+   !> The same about a point that began: arguments of doubts_on_start.
+   subroutine remark_on_begun(par, stress, statev, place)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: stress(6), statev(:)
+      type(place_t), intent(in) :: place
+      logical :: raised(START_DOUBTS)
+      integer :: i
+
+      raised = doubts_on_start(par, stress, statev)
+      do i = 1, START_DOUBTS
+         if (.not. raised(i)) cycle
+         if (first_time(BEFORE_STARTS + i)) call remark(advice_on_start(par, stress, statev, i), place)
+      end do
+   end subroutine remark_on_begun
+
+   !> Says that the void ratio of an update that passed is where the model has no meaning, as at a start.
+   subroutine remark_on_void_ratio(statev, place)
+      real(wp), intent(in) :: statev(:)
+      type(place_t), intent(in) :: place
+
+      if (.not. is_too_loose(statev)) return
+      if (first_time(BEFORE_STARTS + TOO_LOOSE)) call remark('the void ratio has come to '// &
+                                                             advice_on_void_ratio(statev), place)
+   end subroutine remark_on_void_ratio
+
+   !> Says what an update that passed has led to: where its state is, that has no meaning.
+   subroutine remark_on_end(stress, statev, place)
+      real(wp), intent(in) :: stress(6), statev(:)   !< As in remark_on_pressure and remark_on_void_ratio.
+      type(place_t), intent(in) :: place
+
+      if (.not. all(is_finite(stress))) return   ! as vumat_ leaves a refused point
+      call remark_on_pressure(stress, place)
+      call remark_on_void_ratio(statev, place)
+   end subroutine remark_on_end
+
    !> Says that p' fell below zero, which the tension cut-off prevents where it is on. `stress`: effective, at the end
    !> of an update that passed, tension positive, in the unit of p_atm.
    subroutine remark_on_pressure(stress, place)
       real(wp), intent(in) :: stress(6)
       type(place_t), intent(in) :: place
 
-      if (.not. all(is_finite(stress))) return   ! as vumat_ leaves a refused point
       if (.not. sum(stress(1:3)) > 0.0_wp) return
       if (first_time(ON_PRESSURE)) call remark('the mean effective stress p'' is '// &
          trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no meaning below 0, and its tension cut-off is '// &

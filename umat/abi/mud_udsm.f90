@@ -10,7 +10,7 @@ module mud_udsm
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, completed
    use mud_pieces, only: update_in_pieces
-   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked
+   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked
    use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, &
       NSTATV => NSTATV_WITHOUT_HYSTERESIS, PROPERTIES, VARIABLES, statev_name, statev_variable, &
       S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
@@ -120,6 +120,7 @@ contains
       call c_f_pointer(stvar0, state, [NSTATV])
       if (.not. is_finite(state(S_LAYOUT))) return
       if (abs(state(S_LAYOUT)) > 0.0_wp) return
+      call remark_on_start(par, stress, state, state(S_SUCTION), place)
       call kernel_init(values, stress, state(S_SUCTION), state(S_VOID_RATIO), state, report)
    end subroutine initialise
 
@@ -144,6 +145,7 @@ contains
       stress0 = read_six(sig0)
       strain = read_six(deps)
       call c_f_pointer(stvar0, state0, [NSTATV])
+      call remark_on_start(par, stress0, state0, state0(S_SUCTION), place)
       call update_in_pieces(par, stress0, state0, strain, state0(S_SUCTION), 0.0_wp, 0, output, report)
       if (report%status /= MUD_OK) then
          call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
@@ -152,7 +154,7 @@ contains
       end if
       call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
       if (.not. has_past(state0)) call remark_on_props(completed(values), place)
-      call remark_on_pressure(output%stress, place)
+      call remark_on_end(output%stress, output%statev, place)
       if (c_associated(ipl)) then
          call c_f_pointer(ipl, plastic)
          plastic = 0

@@ -6,7 +6,7 @@ module mud_umat
       is_green_strain, suction_t, read_suction, component_order, integer_at, SUCTION_AS_GIVEN
    use mud_kernel, only: report_t, output_t, kernel_point, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
-   use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_pressure, &
+   use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_start, remark_on_end, &
       remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
    use mud_params, only: params_t, read_params, options_of, completed, is_length
    use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, S_SUCTION
@@ -108,6 +108,7 @@ contains
 
       call read_params(props_in, par, status)
       if (status%code == MUD_OK) then
+         call remark_on_start(par, stress6, statev0(:n), suction%start, place)
          call kernel_point(par, stress6, statev0(:n), dstran6, suction%start, suction%change, TANGENT_FROM_PROPS, &
                            output, report)
       else
@@ -122,7 +123,7 @@ contains
          return
       end if
       if (.not. has_past(statev0(:n))) call remark_on_props(completed(props_in), place)
-      call remark_on_pressure(output%stress, place)
+      call remark_on_end(output%stress, output%statev, place)
       output%stress = output%stress(order)
       stress_in = output%stress(1:ntens)
       statev_in(1:output%n_statev) = output%statev(1:output%n_statev)

@@ -11,7 +11,8 @@ module mud_vumat
    use mud_once, only: environment_is, report_at_exit
    use mud_params, only: params_t, read_params, completed, is_length
    use mud_pieces, only: update_in_pieces
-   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_pressure, save_if_asked, KEEP_VARIABLE
+   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked, &
+      KEEP_VARIABLE
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, &
       NSTATV_WITHOUT_HYSTERESIS, S_SUCTION
    use mud_state, only: statev_size
@@ -151,6 +152,7 @@ contains
          call read_suction(points, k, old%state(:m, i), old%suction(i), old%d_suction(i))
       end do
       do i = 1, n
+         call remark_on_start(par, old%stress(:, i), old%state(:m, i), old%suction(i), place_t('vumat_'))
          if (elastic_only) then
             call kernel_point(par, old%stress(:, i), old%state(:m, i), spread(0.0_wp, 1, 6), old%suction(i), 0.0_wp, &
                               ELASTIC, output, report)
@@ -170,7 +172,7 @@ contains
          if (old%status(i) /= MUD_OK) call try_in_pieces(points, par, old, i, stress(:, i), &
                                                             state(:m, i))
          if (.not. has_past(old%state(:m, i))) call remark_on_props(completed(points%props), place_t('vumat_'))
-         if (.not. elastic_only) call remark_on_pressure(stress(:, i), place_t('vumat_'))
+         if (.not. elastic_only) call remark_on_end(stress(:, i), state(:m, i), place_t('vumat_'))
          call write_point(points, first + i - 1, old%strain(:, i), stress(:, i), state(:m, i))
       end do
    end subroutine update_chunk

@@ -9,11 +9,11 @@
  * The way of a host: mud_prepare a material once; mud_init every point; mud_update in every iteration. The same for the
  * points of a mesh: mud_init_points, mud_update_points.
  *
- * Every array is the caller's. Nothing is allocated, printed or kept between calls; calls are thread-safe. No file is
- * read or written, but for mud_save_increment and what MUD_SAVE_FAILED asks of umat_ (see "failed increments" below).
- * umat_, vumat_, user_mod_ and MFront's behaviours alone print: each distinct refusal once a process, on standard error
- * (MUD_MESSAGES=off silences). umat_ where PNEWDT is NULL, and vumat_, alone return a NaN, in the stress of a point
- * that they refuse (MUD_NO_PNEWDT=keep leaves the stress).
+ * Every array is the caller's. Nothing is allocated or kept between calls; calls are thread-safe. No file is read or
+ * written, but for mud_save_increment and what MUD_SAVE_FAILED asks of umat_ (see "failed increments" below). What is
+ * printed goes to standard error, once a process (MUD_MESSAGES=off silences): each distinct refusal of umat_, vumat_,
+ * user_mod_ and MFront's behaviours, and doubtful starts and void ratios of every entry. umat_ where PNEWDT is NULL,
+ * and vumat_, alone return a NaN, in the stress of a point that they refuse (MUD_NO_PNEWDT=keep leaves the stress).
  * Functions return MUD_OK (0), a negative code (the caller's mistake) or a positive one (a hard increment: cut it).
  * Text goes into the caller's buffer of `len` bytes, cut to fit and always terminated; a NULL buffer is allowed.
  */
@@ -118,7 +118,8 @@ int mud_saturation(const double *material, double suction, double void_ratio, do
 /* --- one integration point --------------------------------------------------------------------------- */
 /* Begins a point: fills statev[nstatev] for an effective stress[6], a suction, a void ratio (0: e_0 of the props) and,
  * with hysteresis, a degree of saturation (0: on the main drying curve). A mean stress below p_min is lifted in place;
- * a stress ratio far beyond the bounding surface is refused. */
+ * a stress ratio far beyond the bounding surface is refused. Tension, a mean stress beyond 50 MPa, a void ratio far
+ * above the compression line or from 2.97 on is taken, printed once a process, and text begins with "warning: ". */
 int mud_init(const double *material, double *stress, double suction, double void_ratio, double saturation,
              double *statev, int nstatev, char *text, int len);
 
@@ -149,7 +150,7 @@ typedef struct mud_points {
    int n;                   /* how many points a call reads and writes, 0 or more                      */
    int nstatev;             /* numbers of a point in statev0 and statev1                               */
    int tangent;             /* as in mud_update                                                        */
-   int threads;             /* 0: as many as OpenMP would take                                         */
+   int threads;             /* 0: as many as OpenMP would take; 1 in a fork of a process that used more */
    const int *list;         /* numbers of the n points, from 0, each once; NULL: the first n           */
    const int *material;     /* [...]: number of the material of every point, from 0; NULL: 0           */
    const double *stress0, *statev0;      /* [6*...], [nstatev*...]: where the points are               */

@@ -12,7 +12,7 @@ from mud import namelist
 NEEDED = object()
 #: Groups and their keys with defaults. A list is written as []; None: a number that may be left out.
 KEYS = {
-    "scene": {"name": "scene", "geometry": "axisymmetric", "fields": "u", "pressures": "quadratic", "quadrature": 6.0,
+    "scene": {"name": "scene", "geometry": "axisymmetric", "fields": "u", "pressures": "linear", "quadrature": 6.0,
               "gravity": 0.0, "gravity_history": "", "initial_flow": "drain", "step_tolerance": None,
               "checkpoint_steps": 0.0},
     "mesh": {"file": "", "scale": 1.0, "r": [], "r_cells": [], "r_ratio": [], "y": [], "y_cells": [], "y_ratio": [],

@@ -97,7 +97,7 @@ def critical_state(task: Task, variables: Sequence[Variable]) -> dict[str, float
     ends = []
     for item in task.fitted():
         test = item.test
-        if test.kind not in ("drained", "undrained"):
+        if test.kind not in ("drained", "undrained") or "e" not in test:  # without volume: nothing of the critical state line
             continue
         rows = item.use.rows
         strain, e, p, q = (test[name][rows] for name in ("eps_a", "e", "p", "q"))

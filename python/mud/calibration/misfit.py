@@ -186,7 +186,7 @@ def misfit_of(item: Item, answer: Answer, last: float = 0.2001) -> Misfit:
         told.q = 100 * rms(answer.columns["q"][used] / test["q"][rows][used] - 1)
         if test.kind == "undrained":
             told.p = 100 * rms(answer.columns["p"][used] / test["p"][rows][used] - 1)
-        else:
+        elif "eps_v" in item.use.scatter:
             told.eps_v = 100 * rms(answer.columns["eps_v"][used] - test["eps_v"][rows][used])
     elif test.kind in ("oedometer", "isotropic"):
         off = np.abs(answer.columns["e"] - test["e"][rows])

@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import _native
 from ..errors import MudError
+from ..namelist import LONGEST, quoted
 from ..plots import COLOURS, logarithmic, pyplot
 from ..registry import parameters
 from .calibrate import UNDERSTOOD, Calibration
@@ -31,13 +32,15 @@ def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
     folder.mkdir(parents=True, exist_ok=True)
     task, path = result.task, folder / f"{result.task.name}.nml"
     lines = [
-        f"! {task.title or task.name}, fitted by mud_calibrate on {datetime.date.today().isoformat()}, MUD {_version()}.",
+        *_wrapped(
+            f"{task.title or task.name}, fitted by mud_calibrate on {datetime.date.today().isoformat()}, MUD {_version()}.", "! "
+        ),
         *_wrapped(f"Tests: {_origin(task)}", "! "),
         *_wrapped(_range_text(result), "! "),
         *_wrapped(_misfit_text(result), "! "),
         "&material",
-        f"   name = '{task.title or task.name}{'' if '(' in task.title else ' (fitted)'}'",
-        f"   reference = '{task.reference.replace(chr(39), ' ')[:200]}'",
+        f"   name = {quoted((task.title or task.name) + ('' if '(' in task.title else ' (fitted)'), LONGEST)}",
+        f"   reference = {quoted(task.reference, LONGEST)}",
     ]
     for name, entry in parameters.items():
         value = result.material[name]

@@ -1,73 +1,26 @@
 # SPDX-License-Identifier: MIT
-"""Sheets as laboratories write them: CSV, semicolons and decimal commas, tabs, workbooks; heads in words with units.
+"""Sheets as laboratories write them: CSV, semicolons, tabs or blanks, decimal commas, workbooks.
 
-What a sheet says is brought to the form of ``tables``: names of quantities, units, a point as decimal mark. What had to be
-understood for that is kept as pairs (in the sheet, understood as).
+What a sheet says is brought to heads and rows of cells with a point as decimal mark. What had to be understood for that is
+kept as pairs (in the sheet, understood as).
 """
 
 from __future__ import annotations
 
-import codecs
 import dataclasses
 import os
 import pathlib
 import re
+from collections import Counter
+from collections.abc import Sequence
 
 from .._csv import cells_of
+from .._texts import text_of_bytes
 from ..errors import InputError
+from .heads import NO_UNITS, Head, head_of, unit_of
 
-# Units, and what they are worth in kPa or as a fraction; "" is a pure number.
-UNITS = {
-    "percent": 0.01,
-    "pct": 0.01,
-    "pc": 0.01,
-    "%": 0.01,
-    "kPa": 1.0,
-    "MPa": 1000.0,
-    "Pa": 0.001,
-    "bar": 100.0,
-    "kN/m2": 1.0,
-    "kN/m²": 1.0,
-    "MN/m2": 1000.0,
-    "MN/m²": 1000.0,
-    "N/mm2": 1000.0,
-    "N/mm²": 1000.0,
-    "kg/cm2": 98.0665,
-    "kgf/cm2": 98.0665,
-    "psi": 6.894757293168361,
-    "degrees": 1.0,
-}
-_LOWER_UNITS = {unit.lower(): unit for unit in UNITS} | {"mpa": "MPa", "pa": "Pa"}
-NO_UNITS = ("", "-", "1")
-# Heads in words: letters and figures alone, in lower case -> quantity.
-WORDS = {
-    "test": ("sample", "specimen", "testno", "testname", "sampleno", "probe", "versuch", "ensayo", "muestra", "essai"),
-    "eps_a": ("axialstrain", "verticalstrain", "eps1", "epsa", "epsilon1", "epsilona", "ε1", "εa"),
-    "eps_v": ("volumetricstrain", "volumestrain", "volstrain", "epsv", "epsvol", "epsilonv", "εv", "εvol"),
-    "gamma": ("shearstrain", "γ", "engineeringshearstrain"),
-    "q": ("deviatorstress", "deviatoricstress", "stressdifference", "principalstressdifference"),
-    "p": ("meanstress", "meaneffectivestress", "effectivemeanstress", "p'", "peff", "p′"),
-    "sigma_a": ("axialstress", "verticalstress", "effectiveverticalstress", "effectiveaxialstress")
-    + ("sigma1", "sigma1'", "sigmav", "sigmav'", "σ1", "σ1'", "σ'1", "σv", "σ'v", "σv'", "σa", "σ'a"),
-    "sigma_r": ("radialstress", "effectiveradialstress", "effectiveconfiningpressure", "confiningstress")
-    + ("effectivecellpressure", "lateralstress", "effectivelateralstress")
-    + ("sigma3", "sigma3'", "sigmah", "sigmah'", "σ3", "σ3'", "σ'3", "σh", "σ'h", "σr", "σ'r"),
-    "u": ("porepressure", "excessporepressure", "porewaterpressure", "excessporewaterpressure", "δu", "du"),
-    "e": ("voidratio",),
-    "e_0": ("initialvoidratio", "voidratioatstart", "e0", "einit", "eini"),
-    "suction": ("matricsuction", "suctionpressure"),
-    "S_w": ("degreeofsaturation", "saturation", "saturationdegree", "sw"),
-    "stress_ratio": ("stressratio", "principalstressratio"),
-    "cycle": ("cycleno", "cyclenumber"),
-    "r_u": ("porepressureratio", "ru"),
-    "G_max": ("gmax", "smallstrainshearmodulus", "maximumshearmodulus", "g0"),
-    "G_ratio": ("g/gmax", "g/g0", "modulusratio"),
-    "damping": ("dampingratio",),
-    "csr": ("cyclicstressratio", "crr"),
-    "N": ("cyclestoliquefaction", "numberofcycles", "nliq"),
-}
-_WORDS = {word: quantity for quantity, words in WORDS.items() for word in words}
 LEAST_KNOWN = 2  # heads that make a line the line of names
+LINES_ABOVE = 200  # in which the line of names is looked for
 _DECIMAL = {mark: re.compile(rf"^[+-]?\d+[{mark}]\d+([eE][+-]?\d+)?$") for mark in ",."}
 # 1.234,5 and 1.234: figures in threes, which a number below one has not.
 _THOUSANDS = {mark: re.compile(rf"^[+-]?[1-9]\d{{0,2}}([{mark}]\d{{3}})+([{other}]\d+)?$") for mark, other in (",.", ".,")}
@@ -75,63 +28,110 @@ _THOUSANDS = {mark: re.compile(rf"^[+-]?[1-9]\d{{0,2}}([{mark}]\d{{3}})+([{other
 
 @dataclasses.dataclass
 class Sheet:
-    """Rows of cells, their first the names; ``understood``: pairs (in the sheet, understood as)."""
+    """A table of a file; ``understood``: pairs (in the sheet, understood as)."""
 
+    title: str  #: of a sheet of a workbook, else empty
+    line: int  #: of the names
+    heads: list[Head]
     rows: list[tuple[int, list[str]]]
     understood: list[tuple[str, str]]
 
 
-def read_sheet(path: str | os.PathLike, known: frozenset[str]) -> Sheet:
-    """A file as a sheet. known : names that are taken as they are.
+def read_sheets(path: str | os.PathLike, kind: str) -> list[Sheet]:
+    """The sheets of a file that have rows: one of a text, those of a workbook in their order. kind : of the tests in them.
 
     Raises ``InputError`` for a file that cannot be read.
     """
-    path, understood = pathlib.Path(path), []
+    path = pathlib.Path(path)
     if path.suffix.lower() in (".xlsx", ".xlsm"):
-        rows = _workbook(path, understood)
+        found = _workbook(path)
     else:
-        rows = _text(path, understood)
-    first = _line_of_names(rows, known)
+        told: list[tuple[str, str]] = []
+        found = [("", _text(path, kind, told), told)]
+    return [_sheet(title, rows, kind, told) for title, rows, told in found if rows]
+
+
+def _sheet(title: str, rows: list[tuple[int, list[str]]], kind: str, understood: list[tuple[str, str]]) -> Sheet:
+    first = _line_of_names([cells for _, cells in rows], kind) or 0
     if first:
         lines = f"lines {rows[0][0]} to {rows[first - 1][0]}" if first > 1 else f"line {rows[0][0]}"
         understood.append((lines, "above the line of names, not read"))
-        rows = rows[first:]
-    if not rows:
-        return Sheet([], understood)
-    rows = _second_line_of_units(rows, understood)
+    rows = _second_line_of_units(rows[first:], understood)
     width = max((i + 1 for i, cell in enumerate(rows[0][1]) if cell.strip()), default=0)
-    names = [_understood_name(cell, known, understood) for cell in rows[0][1][:width]]
+    heads = [head_of(cell, kind) for cell in rows[0][1][:width]]
     body = [(number, cells[:width] if _blank(cells[width:]) else cells) for number, cells in rows[1:]]
-    return Sheet([(rows[0][0], names), *body], understood)
+    return Sheet(title, rows[0][0], heads, body, understood)
 
 
-def _blank(cells: list[str]) -> bool:
+def _blank(cells: Sequence[str]) -> bool:
     return not any(cell.strip() for cell in cells)
 
 
-def _text(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[int, list[str]]]:
+def _text(path: pathlib.Path, kind: str, understood: list[tuple[str, str]]) -> list[tuple[int, list[str]]]:
     try:
-        raw = path.read_bytes()
+        text, letters = text_of_bytes(path.read_bytes())
     except OSError as problem:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
-    if raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):  # what Excel calls Unicode text
-        text = raw.decode("utf-16", errors="replace")
-        understood.append(("letters", "UTF-16"))
-    else:
-        try:
-            text = raw.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = raw.decode("cp1252", errors="replace")
-            understood.append(("letters", "Windows-1252, not UTF-8"))
+    if letters:
+        understood.append(("letters", letters))
     if "\0" in text:
         raise InputError(f"{path} is no text; save the table as CSV or .xlsx")
-    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
-    mark = next((m for m in ("\t", ";") if sum(m in line for _, line in lines) > len(lines) / 2), ",")
-    if mark != ",":
-        understood.append(({"\t": "tabs", ";": "semicolons"}[mark] + " between cells", "the separator"))
-    rows = [(n, cells_of(line, mark)) for n, line in lines]
+    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
+    comments = [(n, line.lstrip("# ")) for n, line in lines if line.startswith("#")]
+    lines = [(n, line) for n, line in lines if not line.startswith("#")]
+    mark = _separator([line for _, line in lines])
+    if mark in SEPARATORS:
+        understood.append((f"{SEPARATORS[mark]} between cells", "the separator"))
+    rows = [(n, _split(line, mark)) for n, line in lines]
+    width = Counter(len(cells) for _, cells in rows).most_common(1)[0][0] if rows else 0
+    if mark == " ":
+        rows = [(n, _split_names(line, cells, width)) for (n, line), (_, cells) in zip(lines, rows)]
+    if _line_of_names([cells for _, cells in rows], kind) is None:
+        rows = _names_in_comment(comments, kind, mark, width, understood) + rows
     rows = _decimal_points(rows, mark, understood)
     return [(n, cells) for n, cells in rows if not _blank(cells)]
+
+
+SEPARATORS = {"\t": "tabs", ";": "semicolons", " ": "blanks"}  # that are told
+_GAP = re.compile(r"\d\s+[+-]?[\d.]")  # two numbers with a blank between them
+
+
+def _separator(lines: list[str]) -> str:
+    """What stands between the cells of more than half of the lines. With blanks between numbers commas are decimal marks."""
+
+    def most(meets) -> bool:
+        return sum(map(bool, map(meets, lines))) > len(lines) / 2
+
+    for mark in ("\t", ";"):
+        if most(lambda line: mark in line):
+            return mark
+    if most(lambda line: "," in line) and not most(_GAP.search):
+        return ","
+    return " " if most(lambda line: len(line.split()) > 1) else ","
+
+
+def _split(line: str, mark: str) -> list[str]:
+    return cells_of(" ".join(line.split()), " ") if mark == " " else cells_of(line, mark)
+
+
+def _split_names(line: str, cells: list[str], width: int) -> list[str]:
+    """Cells of a line with blanks inside its names: two blanks or a bracket tell where a name ends."""
+    joined = re.sub(r"\s*/\s*", "/", re.sub(r"\s+(?=[\[({])", "", line.strip()))
+    ways = [cells, re.split(r"\s{2,}|\t", line.strip()), joined.split(), re.split(r"\s{2,}|(?<=[\])}])\s+", line.strip())]
+    return next((way for way in ways if len(way) == width), cells)
+
+
+def _names_in_comment(
+    comments: list[tuple[int, str]], kind: str, mark: str, width: int, understood: list[tuple[str, str]]
+) -> list[tuple[int, list[str]]]:
+    """The comment line that names the columns, as numpy.savetxt writes it; none if no comment does."""
+    for number, line in comments:
+        for other in dict.fromkeys((mark, ",", ";", "\t", " ")):
+            cells = _split_names(line, _split(line, other), width) if other == " " else _split(line, other)
+            if len(cells) == width and _line_of_names([cells], kind) == 0:
+                understood.append((f"the comment in line {number}", "the line of names"))
+                return [(number, cells)]
+    return []
 
 
 def _decimal_points(
@@ -158,7 +158,8 @@ def _decimal_points(
     return [(n, [point(cell) for cell in row]) for n, row in rows]
 
 
-def _workbook(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tuple[int, list[str]]]:
+def _workbook(path: pathlib.Path) -> list[tuple[str, list[tuple[int, list[str]]], list[tuple[str, str]]]]:
+    """(title, rows, what was understood) of every sheet."""
     try:
         import openpyxl
     except ImportError as problem:
@@ -169,22 +170,18 @@ def _workbook(path: pathlib.Path, understood: list[tuple[str, str]]) -> list[tup
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
     except Exception as problem:  # openpyxl raises what its parts raise
         raise InputError(f"{path} is no workbook that openpyxl reads: {problem}") from problem
-    sheets, commas = [], set()
+    sheets = []
     for sheet in book.worksheets:
+        commas: set[str] = set()
         rows = [
             (n, [_cell(v, commas) for v in values])
             for n, values in enumerate(sheet.iter_rows(values_only=True), 1)
         ]
         rows = [(n, cells) for n, cells in rows if not _blank(cells) and not cells[0].startswith("#")]
-        if rows:
-            sheets.append((sheet.title, rows))
+        told = [(f"cells of text as {min(commas)}", "numbers with decimal commas")] if commas else []
+        sheets.append((sheet.title, rows, told))
     book.close()
-    if commas:
-        understood.append((f"cells of text as {min(commas)}", "numbers with decimal commas"))
-    if len(sheets) > 1:
-        others = ", ".join(title for title, _ in sheets[1:])
-        understood.append((f"the sheet {sheets[0][0]}", f"the table; not read: {others}"))
-    return sheets[0][1] if sheets else []
+    return sheets
 
 
 def _cell(value: object, commas: set[str]) -> str:
@@ -195,57 +192,24 @@ def _cell(value: object, commas: set[str]) -> str:
     return "" if value is None else repr(value) if isinstance(value, float) else str(value)
 
 
-def _line_of_names(rows: list[tuple[int, list[str]]], known: frozenset[str]) -> int:
-    """Number of the first row in which names are found; 0 where none is."""
-    for i, (_, cells) in enumerate(rows[:40]):
-        if sum(_name(cell, known)[0] in known for cell in cells if cell.strip()) >= LEAST_KNOWN:
+def _line_of_names(rows: Sequence[Sequence[str]], kind: str) -> int | None:
+    """Number of the first row in which names are found; None where none is."""
+    for i, cells in enumerate(rows[:LINES_ABOVE]):
+        if sum(bool(head_of(cell, kind).quantity) for cell in cells if cell.strip()) >= LEAST_KNOWN:
             return i
-    return 0
+    return None
 
 
 def _second_line_of_units(
     rows: list[tuple[int, list[str]]], understood: list[tuple[str, str]]
 ) -> list[tuple[int, list[str]]]:
-    """A line of units below the names goes into the names."""
+    """A line of units below the names goes into the names: one with a unit and without numbers."""
     if len(rows) < 2:
         return rows
-    units = [cell.strip().strip("[]()").strip() for cell in rows[1][1]]
-    if not any(units) or any(u.lower() not in _LOWER_UNITS and u not in NO_UNITS for u in units):
+    units = [cell.strip().strip("[](){}").strip() for cell in rows[1][1]]
+    if not any(map(unit_of, units)) or any(re.match(r"[+-]?[.,]?\d", unit) and unit != "1" for unit in units):
         return rows
     units += [""] * (len(rows[0][1]) - len(units))
     names = [f"{name.strip()} [{unit}]" if unit not in NO_UNITS else name for name, unit in zip(rows[0][1], units)]
     understood.append((f"line {rows[1][0]}", "units of the names above it"))
     return [(rows[0][0], names), *rows[2:]]
-
-
-def _name(cell: str, known: frozenset[str]) -> tuple[str, str]:
-    """(quantity, unit) of a head; the head itself where it is not understood."""
-    text, unit = cell.strip(), ""
-    found = re.match(r"^(.*?)[\s_,]*[\[\(]\s*([^\[\]\(\)]*?)\s*[\]\)]$", text)
-    if found and (found[2].lower() in _LOWER_UNITS or found[2] in NO_UNITS):
-        text, unit = found[1].strip(), _unit(found[2])
-    else:
-        stem, gap, last = re.match(r"^(.*?)([\s_]?)([^\s_]*)$", text).groups()
-        if stem and gap and last in UNITS:
-            text, unit = stem, last
-    if text in known:
-        return text, unit
-    plain = re.sub(r"[\s_.\-]", "", text).lower()
-    return _WORDS.get(plain, {k.lower(): k for k in known if len(k) > 1}.get(text.lower(), text)), unit
-
-
-def _unit(text: str) -> str:
-    """A unit as UNITS has it: MPa is not mPa, other letters may be of either size."""
-    return text if text in UNITS else _LOWER_UNITS.get(text.lower(), "")
-
-
-def _understood_name(cell: str, known: frozenset[str], understood: list[tuple[str, str]]) -> str:
-    """A head as ``tables`` reads it: the quantity, and its unit behind it."""
-    name, unit = _name(cell, known)
-    if name not in known:
-        return cell.strip()
-    told = {"percent": "percent", "pct": "percent", "pc": "percent", "%": "percent"}.get(unit, unit)
-    answer = f"{name}_{told}" if told else name
-    if answer != cell.strip() and f"{name}_{unit}" != cell.strip():
-        understood.append((cell.strip(), f"{name}" + (f" in {unit}" if unit else ", no unit")))
-    return answer

@@ -216,9 +216,10 @@ def _liquefaction(material: Material, test: LaboratoryTest, rows: np.ndarray) ->
                 control_tolerance=CONTROL_TOLERANCE,
                 max_updates=CYCLE_UPDATES * cycles,
             )
-        except TestStopped as problem:  # the stress is not reached any more: it has failed in that cycle
-            run = problem.result
-        found[k] = np.log10(max(1.0, float(run["cycle"][-1])))
+            number = run["cycle"][-1]
+        except TestStopped as problem:  # the stress is not reached any more: it has failed in the cycle after the last row
+            number = 1 + (len(problem.result["cycle"]) - 1) // 2  # behind the start the rows are reversals, two a cycle
+        found[k] = np.log10(max(1.0, float(number)))
     return Answer({"log_N": found})
 
 

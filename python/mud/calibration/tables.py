@@ -11,36 +11,21 @@ import dataclasses
 import difflib
 import os
 import pathlib
+from collections.abc import Sequence
 
 import numpy as np
 
 from ..errors import InputError
-from .sheets import UNITS, read_sheet
+from .effective import SHEAR, effective_stresses, pore_pressure, usual_p_and_q
+from .heads import STRESSES, Head
+from .sheets import Sheet, read_sheets
+from .steps import noise_of, without_noise
 
-STRAINS, STRESSES = ("eps_a", "eps_v", "gamma"), ("q", "p", "sigma_a", "sigma_r", "suction", "u", "p_0", "amplitude", "G_max")
-NUMBERS = ("e", "e_0", "S_w", "stress_ratio", "cycle", "r_u", "G_ratio", "damping", "csr", "N")
+STRAINS = ("eps_a", "eps_v", "gamma")
 TEXTS = ("test", "control", "cycle_by")
-# Other names of the same.
-ALIASES = {
-    "eps_1": "eps_a",
-    "sigma_1": "sigma_a",
-    "sigma_3": "sigma_r",
-    "sigma3": "sigma_r",
-    "sigma1": "sigma_a",
-    "e0": "e_0",
-    "sr": "stress_ratio",
-    "s_w": "S_w",
-    "s_r": "S_w",
-    "p_eff": "p",
-    "epsv": "eps_v",
-    "epsa": "eps_a",
-    "p0": "p_0",
-    "p_c": "suction",
-}
-SATURATION = {"sr": "S_w"}  # of a retention table: there it is no stress ratio
 # What a kind of test needs; a tuple: one of these.
 NEEDS = {
-    "drained": ("eps_a", ("q", "stress_ratio"), ("eps_v", "e"), ("e", "e_0")),
+    "drained": ("eps_a", ("q", "stress_ratio"), ("e", "e_0")),
     "undrained": ("eps_a", "q", "p", ("e", "e_0")),
     "oedometer": ("sigma_a", ("e", "eps_a")),
     "isotropic": ("p", ("e", "eps_v")),
@@ -59,7 +44,9 @@ SMALLEST_VOLUME = 1e-3  # a drained test to eps_a of 0.05 or more changes its vo
 TOO_SMALL, TOO_LARGE = 2.0, 1.0e5  # [kPa]; a largest stress outside means another unit
 HELD = 0.15  # share by which p - q/3 may leave its median where the radial stress is held
 TOTAL = 0.02  # share of p at the start by which p - q/3 moves at least in an undrained test that is sheared
-RETURN = 1e-9  # a strain that steps back by less is rounding
+# What leads the path of a test, and whether by its logarithm.
+LEADS = {"drained": ("eps_a", False), "undrained": ("eps_a", False), "oedometer": ("sigma_a", True)}
+LEADS |= {"isotropic": ("p", True), "retention": ("suction", True), "cyclic": ("cycle", False)}
 SLOPE_MISFIT = 0.5  # share of eps_v by which e may contradict it before the signs are doubted
 DILATES = 1e-3  # volumetric strain below its negative is dilatancy, not scatter
 
@@ -115,69 +102,59 @@ class LaboratoryTest:
         return float(np.median(self["p"] - self["q"] / 3))
 
 
-def _head(cells: list[str], path: pathlib.Path, line: int, kind: str) -> list[tuple[str, float | None]]:
-    """(quantity, factor) of every column; the factor is None where no unit stands behind the name."""
-    known = {*STRAINS, *STRESSES, *NUMBERS, *TEXTS}
-    shares = ("S_w", "r_u", "damping")  # numbers that may be given in per cent
-    found: list[tuple[str, float | None]] = []
-    for cell in cells:
-        name, factor = cell.strip().removesuffix("_derived").removesuffix("_initial"), None
-        stem, _, last = name.rpartition("_")
-        if stem and last in UNITS:
-            name, factor = stem, UNITS[last]
-        name = (SATURATION if kind == "retention" else {}).get(name, ALIASES.get(name, name))
-        if (
-            name in STRESSES
-            and name != "amplitude"
-            and factor == 0.01
-            or name in STRAINS
-            and factor not in (None, 0.01)
-            or name in NUMBERS
-            and factor is not None
-            and not (name in shares and factor == 0.01)
-        ):
-            raise InputError(f"{path}:{line}: the column {cell} has a unit that {name} cannot have")
-        found.append((name, factor))
-    double = next(
-        (name for i, (name, _) in enumerate(found) if name in known and name in [n for n, _ in found[:i]]), None
-    )
-    if double:
-        raise InputError(f"{path}:{line}: two columns are called {double} (units behind the name do not count)")
-    return found
-
-
 def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
-    """The tests of a sheet, checked: a file with commas, semicolons or tabs between cells, or the first sheet of a workbook.
+    """The tests of a file, checked: cells between commas, semicolons, tabs or blanks, or the sheets of a workbook.
 
     kind : drained, undrained, oedometer, isotropic, cyclic, retention, stiffness, modulus or liquefaction; ``NEEDS`` lists the
-        columns each one needs. A table without a column ``test`` holds one test, called as the file. Where no cell of a test has
-        a void ratio it is unknown: ``unknown_e_0``.
+        columns each one needs. A table without a column ``test`` holds one test, called as the file, or as its sheet where
+        several sheets hold tests. Where no cell of a test has a void ratio it is unknown: ``unknown_e_0``.
 
     Raises ``InputError``: file, line, what is wrong, and what to do.
     """
     path = pathlib.Path(path)
     if kind not in NEEDS:
         raise InputError(f"there is no kind of test {kind}; there are {', '.join(NEEDS)}")
-    sheet = read_sheet(path, frozenset({*STRAINS, *STRESSES, *NUMBERS, *TEXTS, *ALIASES}))
-    rows = sheet.rows
-    if len(rows) < 2:
+    sheets = read_sheets(path, kind)
+    lacks = {sheet.title: " or ".join(_lack(kind, sheet.heads)) for sheet in sheets}
+    used = [sheet for sheet in sheets if not lacks[sheet.title]] or sheets[:1]
+    if not used or not used[0].rows:
         raise InputError(f"{path} has no rows of numbers below its line of names")
-    head = _head(rows[0][1], path, rows[0][0], kind)
-    names = [name for name, _ in head]
-    both = {"sigma_a", "sigma_r"} <= set(names) and kind in ("drained", "undrained")
-    _need_columns(path, rows[0], kind, [*names, *(("q", "p") if both else ())])
-    unread = [name for name in names if name and name not in (*STRAINS, *STRESSES, *NUMBERS, *TEXTS)]
+    if len(sheets) > 1:
+        left = ", ".join(f"{sheet.title} (no {lacks[sheet.title]})" for sheet in sheets if sheet not in used)
+        titles = f"the sheet{'s' * (len(used) > 1)} {', '.join(sheet.title for sheet in used)}"
+        told = ("the table" if len(used) == 1 else "a table each") + f"; not read: {left}" * bool(left)
+        used[0].understood.append((titles, told))
+    tests = [test for sheet in used for test in _tests_of(path, kind, sheet, sheet.title if len(used) > 1 else "")]
+    _guess_void_ratios(path, tests)
+    return tests
+
+
+def _tests_of(path: pathlib.Path, kind: str, sheet: Sheet, title: str) -> list[LaboratoryTest]:
+    """The tests of a sheet. title : how it is called, where several sheets hold tests."""
+    place = f"{path}, sheet {title}" if title else f"{path}"
+    good = {(head.quantity, head.state) for head in sheet.heads if not head.wrong_unit()}
+    # Without a unit that is known beside a column of the same quantity with one: a column of something else.
+    heads = [Head(h.title) if h.strange and (h.quantity, h.state) in good else h for h in sheet.heads]
+    _check_heads(f"{place}:{sheet.line}", kind, heads)
+    sheet.understood += [(head.title, head.told()) for head in heads if head.quantity and not head.is_plain()]
+    names = [head.quantity for head in heads]
     groups: dict[str, list[tuple[int, list[str]]]] = {}
     name = ""
-    for number, cells in rows[1:]:
-        if len(cells) != len(head):
-            raise InputError(f"{path}:{number}: {len(cells)} cells, the line of names has {len(head)}")
-        name = (cells[names.index("test")].strip() or name) if "test" in names else path.stem
+    for number, cells in sheet.rows:
+        if len(cells) != len(heads):
+            raise InputError(f"{place}:{number}: {len(cells)} cells, the line of names has {len(heads)}")
+        name = (cells[names.index("test")].strip() or name) if "test" in names else title or path.stem
         groups.setdefault(name, []).append((number, cells))
-    tests = [_test(path, kind, name, head, rows[0][1], mine) for name, mine in groups.items()]
+    noise: list[tuple[int, float]] = []
+    tests = [_test(place, path.name, kind, name, heads, mine, noise) for name, mine in groups.items()]
+    if noise:
+        rows, back = f"{len(noise)} row{'s' * (len(noise) > 1)}", max(size for _, size in noise)
+        step = f" or behind it by at most {100 * back:.2g} %{' of its value' * LEADS[kind][1]}" if back else ""
+        told = f"noise of the record: {rows} dropped, the first in line {min(line for line, _ in noise)}"
+        sheet.understood.append((f"a row equal to the one before{step}", told))
+    unread = [(head.title, "not read") for head in heads if head.title and not head.quantity]
     for test in tests:
-        test.understood = [*sheet.understood, *((word, "not read") for word in unread), *test.understood]
-    _guess_void_ratios(path, tests)
+        test.understood = [*sheet.understood, *unread, *test.understood]
     return tests
 
 
@@ -194,71 +171,114 @@ def _guess_void_ratios(path: pathlib.Path, tests: list[LaboratoryTest]) -> None:
             )
 
 
-def _need_columns(path: pathlib.Path, head: tuple[int, list[str]], kind: str, names: list[str]) -> None:
+def _lack(kind: str, heads: Sequence[Head]) -> tuple[str, ...]:
+    """The first need of a kind of test that the heads do not meet; nothing if they meet all."""
+    names = {head.quantity for head in heads}
+    if kind in SHEAR and {"sigma_a", "sigma_r"} <= names:
+        names |= {"q", "p"}
+    if kind in SHEAR and {"q", "sigma_r"} <= names:
+        names |= {"p"}
     for need in NEEDS[kind]:
         choices = need if isinstance(need, tuple) else (need,)
-        if any(choice in names for choice in choices):
-            continue
-        near = difflib.get_close_matches(choices[0], head[1], 1, 0.5)
+        if not names & set(choices):
+            return choices
+    return ("sigma_r", "p beside q") if kind == "drained" and "sigma_r" not in names and not {"p", "q"} <= names else ()
+
+
+def _check_heads(where: str, kind: str, heads: Sequence[Head]) -> None:
+    """Refuses units that cannot be, two columns of one name, and columns that are missing."""
+    titles = [head.title for head in heads]
+    for head in heads:
+        if head.quantity and head.wrong_unit():
+            raise InputError(f"{where}: {head.wrong_unit()}")
+    known = [(head.quantity, head.state) for head in heads if head.quantity]
+    double = next((name for i, (name, state) in enumerate(known) if (name, state) in known[:i]), None)
+    if double:
+        told = ", ".join(head.title for head in heads if head.quantity == double)
+        raise InputError(f"{where}: two columns are called {double} (units behind the name do not count): {told}")
+    choices = _lack(kind, heads)
+    wanted = (*choices, *(("u",) if "u" not in [head.quantity for head in heads] else ()))
+    for head in heads:  # sigma_1_furlong: the column is there, and its unit is not known
+        if head.near in wanted:
+            raise InputError(f"{where}: {head.wrong_unit()}")
+    if choices:
+        near = difflib.get_close_matches(choices[0], titles, 1, 0.5)
         hint = f"; is {near[0]} meant?" if near else "."
         raise InputError(
-            f"{path}:{head[0]}: a table of {kind} tests needs the column {' or '.join(choices)}; it has "
-            f"{', '.join(head[1])}{hint} Name a column by its quantity with the unit behind it, as eps_a_percent, q_kPa, e_0: "
+            f"{where}: a table of {kind} tests needs the column {' or '.join(choices)}; it has "
+            f"{', '.join(titles)}{hint} Name a column by its quantity with the unit behind it, as eps_a_percent, q_kPa, e_0: "
             "calibration/README.md, section Tables"
-        )
-    if kind == "drained" and "sigma_r" not in names and not {"p", "q"} <= set(names):
-        raise InputError(
-            f"{path}:{head[0]}: a table of drained tests needs p beside q, or sigma_r: which radial stress was held?"
         )
 
 
 def _test(
-    path: pathlib.Path,
+    place: str,
+    source: str,
     kind: str,
     name: str,
-    head: list[tuple[str, float | None]],
-    titles: list[str],
+    heads: Sequence[Head],
     rows: list[tuple[int, list[str]]],
+    noise: list[tuple[int, float]],
 ) -> LaboratoryTest:
+    """A test of its rows. noise : gets the line of every row that is dropped, and how far it lies behind."""
+    where = f"{place}, test {name}"
     columns: dict[str, np.ndarray] = {}
+    stresses: dict[tuple[str, str], tuple[str, np.ndarray]] = {}
+    pressures: dict[str, tuple[str, np.ndarray]] = {}
     words = {"control": "", "cycle_by": ""}
     understood: list[tuple[str, str]] = []
     numbers = np.array([number for number, _ in rows])
-    for place, (quantity, factor) in enumerate(head):
-        cells = [cells[place].strip() for _, cells in rows]
-        if quantity in words:
-            words[quantity] = cells[0]
-        if quantity not in (*STRAINS, *STRESSES, *NUMBERS):
+    for at, head in enumerate(heads):
+        cells = [cells[at].strip() for _, cells in rows]
+        if head.quantity in words:
+            words[head.quantity] = cells[0]
+        if head.quantity in ("", *TEXTS):
             continue
-        if quantity in ("e", "e_0") and not any(cells) and kind in ("drained", "undrained"):
+        if head.quantity in ("e", "e_0") and not any(cells) and kind in SHEAR:
             continue
-        if quantity in _stays(kind) and cells[0] and cells[1:] and not any(cells[1:]):
-            understood.append((f"{titles[place]} in the first row of a test alone", "the same in its other rows"))
+        if head.quantity in _stays(kind) and cells[0] and cells[1:] and not any(cells[1:]):
+            understood.append((f"{head.title} in the first row of a test alone", "the same in its other rows"))
             cells = cells[:1] * len(cells)
-        values = _values(path, titles[place], cells, numbers)
-        if quantity in STRAINS:
-            _check_percent(path, name, kind, quantity, titles[place], values, factor, numbers)
-        largest = np.max(np.abs(values))
-        if quantity in ("q", "p", "sigma_a", "sigma_r") and not TOO_SMALL <= largest * (factor or 1.0) <= TOO_LARGE:
+        given = _values(place, head.title, cells, numbers)
+        if head.quantity in STRAINS:
+            _check_percent(place, name, kind, head, given, numbers)
+        values = head.inside(given)
+        if head.quantity in ("q", "p", "sigma_a", "sigma_r") and not TOO_SMALL <= np.max(np.abs(values)) <= TOO_LARGE:
             raise InputError(
-                f"{path}, test {name}: the largest {titles[place]} is {largest:g}; stresses are in kPa unless the "
+                f"{where}: the largest {head.title} is {np.max(np.abs(given)):g}; stresses are in kPa unless the "
                 "name says _MPa or _Pa, and a test of soil reaches between 2 kPa and 100 MPa"
             )
-        if quantity == "amplitude" and words["cycle_by"] in ("eps_a", "gamma") and factor not in (None, 0.01):
-            raise InputError(f"{path}, test {name}: an amplitude of {words['cycle_by']} is a strain, not a stress")
-        columns[quantity] = values * (1.0 if factor is None else factor)
-    test = LaboratoryTest(name, kind, columns, path.name, numbers, understood=understood, **words)
-    if kind in ("drained", "undrained"):
-        _stresses(test)
-        test.unknown_e_0 = "e" not in test and "e_0" not in test and "eps_v" in test or (
-            kind == "undrained" and "e" not in test and "e_0" not in test
+        if head.quantity == "amplitude" and words["cycle_by"] in ("eps_a", "gamma") and head.unit not in ("", "percent"):
+            raise InputError(f"{where}: an amplitude of {words['cycle_by']} is a strain, not a stress")
+        if head.quantity in STRESSES:
+            stresses[head.quantity, head.state] = head.title, values
+        elif head.quantity == "u":
+            pressures[head.state] = head.title, values
+        else:
+            columns[head.quantity] = values
+    pressure, since, told = pore_pressure(kind, pressures)
+    if pressure is not None:
+        columns["u"] = pressure
+    understood += [*told, *effective_stresses(where, kind, stresses, columns, since)]
+    understood += usual_p_and_q(where, kind, columns)
+    test = LaboratoryTest(name, kind, columns, source, numbers, understood=understood, **words)
+    _derive_stresses(test, "u" in columns)
+    lack = _lack(kind, [head for head in heads if head.quantity not in STRESSES] + [Head(name, name) for name in columns])
+    if lack:
+        raise InputError(
+            f"{where}: {' or '.join(lack)} is missing, because a total stress alone says nothing of the effective one; give "
+            "the pore pressure, u_kPa (zeros where there is none), or the effective stress, as sigma_3'"
         )
-        if kind == "drained" and "e" not in test and "e_0" not in test and "eps_v" not in test:
-            raise InputError(f"{path}, test {name}: neither a void ratio nor a volumetric strain is given")
-    _void_ratio_of_compression(f"{path}, test {name}", test)
-    if len(rows) < FEWEST_ROWS[kind]:
-        raise InputError(f"{path}, test {name}: {len(rows)} rows; a {kind} test needs at least {FEWEST_ROWS[kind]}")
-    _check_values(path, test)
+    if kind in SHEAR:
+        test.unknown_e_0 = "e" not in test and "e_0" not in test
+        if kind == "drained" and test.unknown_e_0 and "eps_v" not in test:
+            raise InputError(f"{where}: neither a void ratio nor a volumetric strain is given")
+    _void_ratio_of_compression(where, test)
+    if kind in LEADS:
+        _drop_noise(place, test, noise)
+    if len(test.lines) < FEWEST_ROWS[kind]:
+        raise InputError(f"{where}: {len(test.lines)} rows; a {kind} test needs at least {FEWEST_ROWS[kind]}")
+    _check_values(place, test)
     if kind == "liquefaction":
         test.columns["log_N"] = np.log10(test["N"])
     if kind == "drained":
@@ -268,12 +288,33 @@ def _test(
     return test
 
 
+def _drop_noise(place: str, test: LaboratoryTest, noise: list[tuple[int, float]]) -> None:
+    """Leaves out the rows that are equal to the one before or step back within the noise of the record. Points of a retention
+    curve at one suction stay: each of them counts."""
+    lead, by_stress = LEADS[test.kind]
+    if by_stress and np.median(test[lead]) <= 0:
+        return  # a sign that is swapped, which is told below
+    kept, turns, back = without_noise(test[lead], by_stress, test.kind == "retention")
+    if test.kind in SHEAR and len(turns):
+        at, strain = int(turns[0]), test[lead]
+        low = at + 1 + int(np.argmax(np.abs(strain[at + 1 :] - strain[at]) > noise_of(strain)))
+        raise InputError(
+            f"{place}:{test.lines[low]}: test {test.name}: {lead} goes from {strain[at]:g} to {strain[low]:g}, more than the "
+            f"noise of the record ({noise_of(strain):.2g}); in a {test.kind} test it moves one way. A test with reversals is "
+            "cyclic; an unloading at the end must go"
+        )
+    dropped = np.setdiff1d(np.arange(len(test.lines)), kept)
+    noise += [(int(test.lines[row]), back) for row in dropped]
+    test.columns = {name: values[kept] for name, values in test.columns.items()}
+    test.lines = test.lines[kept]
+
+
 def _stays(kind: str) -> tuple[str, ...]:
     """Quantities that belong to a whole test: sheets with merged cells give them in its first row."""
-    return ("e_0", "p_0", "amplitude", *(("sigma_r",) if kind == "drained" else ()))
+    return ("e_0", "p_0", "amplitude", *(("sigma_r", "u") if kind == "drained" else ()))
 
 
-def _values(path: pathlib.Path, title: str, cells: list[str], numbers: np.ndarray) -> np.ndarray:
+def _values(place: str, title: str, cells: list[str], numbers: np.ndarray) -> np.ndarray:
     values = np.empty(len(cells))
     for i, cell in enumerate(cells):
         try:
@@ -281,41 +322,32 @@ def _values(path: pathlib.Path, title: str, cells: list[str], numbers: np.ndarra
         except ValueError:
             values[i] = np.nan
         if not np.isfinite(values[i]):
-            raise InputError(f"{path}:{numbers[i]}: {title} = '{cell}' is not a number")
+            raise InputError(f"{place}:{numbers[i]}: {title} = '{cell}' is not a number")
     return values
 
 
-def _check_percent(
-    path: pathlib.Path,
-    name: str,
-    kind: str,
-    quantity: str,
-    title: str,
-    values: np.ndarray,
-    factor: float | None,
-    numbers: np.ndarray,
-) -> None:
+def _check_percent(place: str, name: str, kind: str, head: Head, values: np.ndarray, numbers: np.ndarray) -> None:
     """A strain whose size contradicts its unit."""
     at = int(np.argmax(np.abs(values)))
     largest = abs(values[at])
-    limit = LARGEST_FRACTION["eps_v" if kind == "oedometer" else quantity]
-    if factor is None and largest > limit:
+    limit = LARGEST_FRACTION["eps_v" if kind == "oedometer" else head.quantity]
+    if head.worth == 1 and largest > limit:
         raise InputError(
-            f"{path}:{numbers[at]}: test {name}: {title} reaches {values[at]:g}, too much for a strain as a "
-            f"fraction; if it is in per cent call the column {quantity}_percent"
+            f"{place}:{numbers[at]}: test {name}: {head.title} reaches {values[at]:g}, too much for a strain as a "
+            f"fraction; if it is in per cent call the column {head.quantity}_percent"
         )
-    if factor is not None and quantity == "eps_a" and kind in ("drained", "undrained") and largest < SMALLEST_PERCENT:
+    if head.unit == "percent" and head.quantity == "eps_a" and kind in SHEAR and largest < SMALLEST_PERCENT:
         raise InputError(
-            f"{path}:{numbers[at]}: test {name}: {title} ends at {values[at]:g} per cent, too little for a shear "
-            f"test; if it is a fraction call the column {quantity}"
+            f"{place}:{numbers[at]}: test {name}: {head.title} ends at {values[at]:g} per cent, too little for a shear "
+            f"test; if it is a fraction call the column {head.quantity}"
         )
 
 
-def _check_values(path: pathlib.Path, test: LaboratoryTest) -> None:
-    where = f"{path}, test {test.name}"
+def _check_values(place: str, test: LaboratoryTest) -> None:
+    where = f"{place}, test {test.name}"
 
     def first(bad: np.ndarray) -> str:
-        return f"{path}:{test.lines[int(np.argmax(bad))]}: test {test.name}"
+        return f"{place}:{test.lines[int(np.argmax(bad))]}: test {test.name}"
 
     for quantity, low, high in (("e", 0.01, 5.0), ("e_0", 0.01, 5.0), ("S_w", 0.0, 1.0 + 1e-9), ("suction", 0.0, 1e7)):
         if quantity in test:
@@ -327,14 +359,6 @@ def _check_values(path: pathlib.Path, test: LaboratoryTest) -> None:
     if test.kind in ("drained", "undrained"):
         strain, q = test["eps_a"], test["q"] if "q" in test else test["stress_ratio"] - 1
         way = np.sign(strain[-1] - strain[0])
-        back = np.diff(strain) * way < RETURN * abs(strain[-1])
-        if back.any():
-            at = int(np.argmax(back)) + 1
-            raise InputError(
-                f"{path}:{test.lines[at]}: test {test.name}: eps_a goes from {strain[at - 1]:g} to {strain[at]:g}; "
-                f"in a {test.kind} test it moves one way. A test with reversals is cyclic; a row that is there "
-                "twice must go"
-            )
         late = slice(len(q) // 2, None)
         if way * np.median(q[late]) < 0:
             raise InputError(
@@ -365,8 +389,8 @@ def _check_stress(where: str, test: LaboratoryTest) -> None:
         start = float(test["p"][0])
         if test.kind == "undrained" and np.ptp(radial) < TOTAL * start and np.ptp(test["q"]) > 0.5 * start:
             raise InputError(
-                f"{where}: p - q/3 stays at {middle:g} kPa: p seems to be the total mean stress; an undrained test needs the "
-                "effective one"
+                f"{where}: p - q/3 stays at {middle:g} kPa while q grows. Is p the total mean stress? An undrained test needs "
+                "the effective one, or the pore pressure u beside the total one. Or is it a drained test?"
             )
     if test.kind in ("oedometer", "isotropic"):
         stress = test["sigma_a" if test.kind == "oedometer" else "p"]
@@ -419,25 +443,20 @@ def _check_volume(where: str, test: LaboratoryTest) -> None:
         )
 
 
-def _stresses(test: LaboratoryTest) -> None:
-    """q and p of sigma_1 and sigma_3 where they are not given; total stresses less the pore pressure."""
-    columns = test.columns
-    if not {"sigma_a", "sigma_r"} <= set(columns):
+def _derive_stresses(test: LaboratoryTest, pore_pressure: bool) -> None:
+    """q and p of a shear test of effective sigma_1 and sigma_3 where they are not given."""
+    columns, told = test.columns, []
+    if test.kind not in SHEAR or "sigma_r" not in columns:
         return
-    if test.kind == "undrained" and "u" in columns and "p" not in columns:
-        if np.ptp(columns["sigma_r"]) < TOTAL * np.max(columns["sigma_r"]) < np.ptp(columns["u"]):
-            for name in ("sigma_a", "sigma_r"):
-                columns[name] = columns[name] - columns["u"]
-            test.understood.append(("sigma_3 that stays while u changes", "total stresses; u is taken off"))
-    told = []
-    if "q" not in columns:
+    if "q" not in columns and "sigma_a" in columns:
         columns["q"] = columns["sigma_a"] - columns["sigma_r"]
         told.append("q = sigma_1 - sigma_3")
-    if "p" not in columns:
-        columns["p"] = (columns["sigma_a"] + 2 * columns["sigma_r"]) / 3
+    if "p" not in columns and "q" in columns:
+        columns["p"] = columns["sigma_r"] + columns["q"] / 3
         told.append("p' = (sigma_1 + 2 sigma_3)/3")
-    if told:
-        test.understood.append(("sigma_1, sigma_3", ", ".join(told) + ", effective stresses"))
+    if told and "sigma_a" in columns:
+        since = "" if pore_pressure else ", taken as effective stresses: the table has no pore pressure u"
+        test.understood.append(("sigma_1, sigma_3", ", ".join(told) + since))
 
 
 def _void_ratio_of_compression(where: str, test: LaboratoryTest) -> None:
@@ -456,9 +475,11 @@ def _complete_drained(test: LaboratoryTest) -> None:
     columns = test.columns
     if "q" not in columns:
         columns["q"] = (columns["stress_ratio"] - 1) * columns["sigma_r"]
-    if "eps_v" not in columns:
+    if "eps_v" not in columns and "e" in columns:
         columns["eps_v"] = (columns["e"][0] - columns["e"]) / (1 + columns["e"][0])
-    if "e" not in columns and "e_0" in columns:
+    if "eps_v" not in columns:
+        test.understood.append(("no volumetric strain", "not measured: q alone is compared"))
+    elif "e" not in columns and "e_0" in columns:
         columns["e"] = columns["e_0"] - (1 + columns["e_0"]) * columns["eps_v"]
     if "p" not in columns:
         columns["p"] = columns["sigma_r"] + columns["q"] / 3

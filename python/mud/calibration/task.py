@@ -9,6 +9,7 @@ import pathlib
 import tomllib
 from collections.abc import Mapping, Sequence
 
+from .._texts import text_of_bytes
 from ..errors import InputError
 from ..material import Material
 from .simulation import SCATTER, Use, use_of
@@ -147,7 +148,7 @@ def read_task(path: str | os.PathLike) -> Task:
     """The task of a TOML file; paths in it begin in its folder. Keys: those of ``make_task`` and of ``Task``."""
     path = pathlib.Path(path)
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(text_of_bytes(path.read_bytes())[0])
     except OSError as problem:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
     except tomllib.TOMLDecodeError as problem:

@@ -28,6 +28,9 @@ module mud_state
    real(wp), parameter :: LARGEST_FLUIDITY = 1.0e4_wp     !< ell_max is at most that [-].
    real(wp), parameter :: LARGEST_MARGIN = 1.0e3_wp       !< ln of a double [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
+   !> Counts and flags of every point: numbers that are not whole are the average of two states.
+   integer, parameter :: WHOLE_ENTRIES(*) = [S_INTERRUPTED, S_OPEN, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, S_N_RESET, &
+      S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE]
 
    !> A loading process that was interrupted (rule return_point).
    type :: interrupted_t
@@ -96,7 +99,8 @@ contains
 
    !> Reads a state from an initialised STATEV; the stress is set by the caller. statev(:) has at least the numbers of
    !> statev_size, else MUD_BAD_NSTATV; units as in mud_registry, tensors with the sign of the core. MUD_BAD_STATE names
-   !> the first entry that is not finite or out of its range; the state is then of no use.
+   !> the first entry that is not finite, out of its range, or a count that is not whole (its value is then within the
+   !> range of the status); the state is then of no use.
    pure subroutine unpack_state(statev, options, state, status)
       real(wp), intent(in), contiguous :: statev(:)
       type(options_t), intent(in) :: options
@@ -127,6 +131,9 @@ contains
       call require(statev, S_SATURATION, 0.0_wp, 1.0_wp, status)
       call require(statev, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp), status)
       call require(statev, S_OPEN, 0.0_wp, 1.0_wp, status)
+      do i = 1, size(WHOLE_ENTRIES)
+         call require_whole(statev, WHOLE_ENTRIES(i), status)
+      end do
       call require(statev, S_LAST_STEP, 0.0_wp, huge(1.0_wp), status)
       call require(statev, S_EPS_Q_P, 0.0_wp, huge(1.0_wp), status)
       call require(statev, S_TARGET, -LARGEST_RATIO, LARGEST_RATIO, status)
@@ -230,6 +237,8 @@ contains
          status = fail(MUD_BAD_STATE, ON_STATEV, S_TURNS - 1 + i, statev(S_TURNS - 1 + i), -huge(1.0_wp), huge(1.0_wp))
       if (status%code /= 0) return
       call require(statev, S_TURNS, -real(1 + MAX_TURNS, wp), real(1 + MAX_TURNS, wp), status)
+      call require_whole(statev, S_TURNS, status)
+      call require_whole(statev, S_N_CLEARED, status)
       turns = NO_TURNS
       if (status%code /= 0) return
       turns%dries = statev(S_TURNS) >= 0.0_wp
@@ -283,6 +292,17 @@ contains
       if (statev(entry) >= lower .and. statev(entry) <= upper) return   ! and never where it is not a number
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), lower, upper)
    end subroutine require
+
+   !> The same of a number that is finite and must be whole: the range that the status has holds it.
+   pure subroutine require_whole(statev, entry, status)
+      real(wp), intent(in) :: statev(:)
+      integer, intent(in) :: entry
+      type(mud_status_t), intent(inout) :: status
+
+      if (status%code /= 0) return
+      if (abs(statev(entry) - anint(statev(entry))) <= 0.0_wp) return
+      status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), -huge(1.0_wp), huge(1.0_wp))
+   end subroutine require_whole
 
    !> The same of the six components of a tensor that are finite, of magnitude up to a limit.
    pure subroutine require_tensor(statev, first, limit, status)

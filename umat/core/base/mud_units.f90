@@ -10,9 +10,11 @@ module mud_units
    private
    public :: stress_unit, bounds_for, convert_props, minimum_stress, threshold_of_fluidity, doubt_t, NDOUBTS, &
       unit_doubts
-   public :: LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
+   public :: LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM, CREDIBLE_PRESSURE
 
    real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp         !< A stress or suction beyond it is an input error [kPa].
+   !> Mean stress of a start up to which it is credible: beyond 50 MPa, 5 km of ground, grains crush [kPa].
+   real(wp), parameter :: CREDIBLE_PRESSURE = 5.0e4_wp
    real(wp), parameter :: LARGEST_SUCTION_STEP = 1.0e7_wp   !< Larger steps are asked to be cut [kPa].
    real(wp), parameter :: SMALLEST_MINIMUM = 1.0e-9_wp      !< Least p_min and p_ell that may be given [kPa].
    real(wp), parameter :: MINIMUM_DIVISOR = 1000.0_wp       !< p_min = 0 means p_atm over this [-].

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Rates along an increment, or along one of its phases: void ratio, suction and the strain that loads at a pseudo-time.
 module mud_increment
-   use mud_kinds, only: wp
+   use mud_kinds, only: wp, NOTHING
    use mud_params, only: params_t
    use mud_state, only: counters_t
    use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm, tensors_t, contracted
@@ -207,16 +207,17 @@ contains
    end subroutine changes_of_straight_strain
 
    !> An increment of a point with void ratio e, suction p_c and a strain from_centre of the elastic domain. e and
-   !> strain [-], tensor shear, compression positive; p_c and d_pc in the unit of p_atm. The phase is not set, nothing
-   !> is checked. docs/theory/integration.md section 1, docs/theory/memory-rules.md section 4.2.
-   pure subroutine new_increment(par, e, p_c, from_centre, d_strain, d_pc, inc)
+   !> strain [-], tensor shear, compression positive; p_c and d_pc in the unit of p_atm. A change below NOTHING is none.
+   !> The phase is not set, nothing is checked. docs/theory/integration.md section 1, docs/theory/memory-rules.md 4.2.
+   pure subroutine new_increment(par, e, p_c, from_centre, strain, suction_step, inc)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: e, p_c, from_centre(6), d_strain(6), d_pc
+      real(wp), intent(in) :: e, p_c, from_centre(6), strain(6), suction_step
       type(increment_t), intent(out) :: inc
-      real(wp) :: length
+      real(wp) :: d_strain(6), length
 
+      d_strain = without_nothing(strain)
       inc%d_strain = d_strain
-      inc%d_pc = d_pc
+      inc%d_pc = without_nothing(suction_step)
       inc%p_c0 = p_c
       inc%e0 = e
       inc%d_v = trace(d_strain)
@@ -227,9 +228,9 @@ contains
       inc%from_centre = 0.0_wp
       inc%straight = .false.
       if (inc%rho <= 0.0_wp) return
-      inc%from_centre = from_centre
-      length = norm(from_centre)
-      if (length > inc%rho) inc%from_centre = (inc%rho/length)*from_centre
+      inc%from_centre = without_nothing(from_centre)
+      length = norm(inc%from_centre)
+      if (length > inc%rho) inc%from_centre = (inc%rho/length)*inc%from_centre
       inc%exit = exit_share(inc%rho, inc%from_centre, d_strain)
       if (inc%exit < SHORTEST_PHASE) inc%exit = 0.0_wp
       if (1.0_wp - inc%exit < SHORTEST_PHASE) then
@@ -241,6 +242,13 @@ contains
          inc%straight = norm(inc%from_centre/inc%rho - d_strain/norm(d_strain)) < STRAIGHT
       end if
    end subroutine new_increment
+
+   !> A number, or 0 where its square would not be one [-].
+   pure elemental real(wp) function without_nothing(x)
+      real(wp), intent(in) :: x
+
+      without_nothing = merge(x, 0.0_wp, abs(x) > NOTHING)
+   end function without_nothing
 
    !> The phase of an increment between two pseudo-times [-]: nothing changes its kind in between.
    pure subroutine take_phase(par, from, to, inc)

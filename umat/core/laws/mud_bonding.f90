@@ -7,7 +7,7 @@ module mud_bonding
    use mud_retention, only: saturation_t, saturation, saturation_curvature, change_with_turn
    implicit none (type, external)
    private
-   public :: bonding_t, is_bonded, bonding, bonding_curvature, bonding_with_turn, UNBONDED
+   public :: bonding_t, is_bonded, bonding, bonding_factor, bonding_curvature, bonding_with_turn, UNBONDED
 
    !> The factor f(zeta) and its slopes.
    type :: bonding_t
@@ -54,6 +54,19 @@ contains
       bond%force_1 = force(1)
       bond%force_2 = force(2)
    end function bonding
+
+   !> f(zeta) at a suction [kPa] and a degree of saturation [-], whichever branch led to it; 1 where bonding does not
+   !> act. docs/theory/material.md section 2.2.
+   pure real(wp) function bonding_factor(par, p_c, s_w) result(f)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: p_c, s_w
+      real(wp) :: force(0:2)
+
+      f = 1.0_wp
+      if (.not. is_bonded(par, p_c)) return
+      force = meniscus_force(par, p_c)
+      f = 1.0_wp - par%b_1*(1.0_wp - exp(par%b_2*(1.0_wp - s_w)*force(0)))
+   end function bonding_factor
 
    !> Second derivatives [d2f/dp_c2 (1/kPa2), d2f/dp_c de (1/kPa), d2f/de2 (-)] at the suction and void ratio of bond.
    !> Derivatives of docs/theory/material.md sections 2.1 and 2.2; bond is that of p_c [kPa] and e [-].

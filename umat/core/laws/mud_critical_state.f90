@@ -3,7 +3,7 @@
 !> docs/theory/material.md sections 3.2 to 3.5.
 module mud_critical_state
    use mud_branchless, only: larger, smaller
-   use mud_kinds, only: wp, SQRT_2_3, SQRT_6
+   use mud_kinds, only: wp, SQRT_2_3, SQRT_6, NOTHING
    use mud_params, only: params_t
    use mud_tensor, only: ddot, deviator, square
    implicit none (type, external)
@@ -100,8 +100,8 @@ contains
       if (par%lode) slope = par%lode_bend*g**5
    end function lode_slope
 
-   !> g and dg/dr in the direction of a stress ratio r, r_norm = |r| > 0 [-]. The gradient is a deviator without a part
-   !> along r; zeros where the Lode dependence is off.
+   !> g and dg/dr in the direction of a stress ratio r, r_norm = |r| [-]. The gradient is a deviator without a part
+   !> along r; zeros where the Lode dependence is off, and without a direction (r = 0).
    pure subroutine lode_gradient(par, r, r_norm, g, g_r)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: r(6), r_norm
@@ -110,7 +110,7 @@ contains
 
       g = 1.0_wp
       g_r = 0.0_wp
-      if (.not. par%lode) return
+      if (.not. (par%lode .and. r_norm > NOTHING)) return
       r2 = square(r)
       cube = ddot(r2, r)/r_norm**3
       g = lode_factor(par, cube)
@@ -125,7 +125,7 @@ contains
       real(wp) :: g
 
       g = 1.0_wp
-      if (par%lode .and. r_norm > 0.0_wp) g = lode_factor(par, ddot(square(r), r)/r_norm**3)
+      if (par%lode .and. r_norm > NOTHING) g = lode_factor(par, ddot(square(r), r)/r_norm**3)
       bounding_norm = SQRT_2_3*g*m_b
    end function bounding_norm
 

@@ -9,7 +9,8 @@ module mud_elastic
              BULK_EXPONENT, SHEAR_EXPONENT, STIFF_ABOVE
 
    real(wp), parameter :: BULK_EXPONENT = 2.0_wp/3.0_wp, SHEAR_EXPONENT = 0.5_wp   !< Of p' in K and in G [-].
-   real(wp), parameter :: STIFF_ABOVE = 2.97_wp   !< Void ratio of eq. (3) at which G vanishes [-].
+   !> Void ratio of eq. (3) at which G vanishes: its square grows again beyond, where it means nothing [-].
+   real(wp), parameter :: STIFF_ABOVE = 2.97_wp
 contains
    !> Bulk modulus K [kPa] at a void ratio [-] and a mean effective stress [kPa], paper eq. (2). Neither e > 0 nor p > 0
    !> is checked.

@@ -93,9 +93,7 @@ contains
       lin%per_p = 1.0_wp/w%p
       lin%per_f = 1.0_wp/w%bond%f
       if (w%iso_active) then
-         lin%lode_r = 1.0_wp
-         lin%lode_r_slope = 0.0_wp
-         if (w%r_norm > 0.0_wp) call lode_gradient(par, w%r, w%r_norm, lin%lode_r, lin%lode_r_slope)
+         call lode_gradient(par, w%r, w%r_norm, lin%lode_r, lin%lode_r_slope)
          lin%mechanism = isotropic_slopes(par, w%bond, e, swelling_slope(w%k, e, w%p), SQRT_2_3*lin%lode_r*w%m_b, w%iso)
       end if
       if (.not. w%loading) return

@@ -34,7 +34,7 @@ def check(bench):
         bench.near(f"{geometry} u_r", nodes["u_r"], (s_r - NU * (s_z + s_t)) / E * nodes["r"], DISPLACEMENT, "m")
         bench.near(f"{geometry} u_z", nodes["u_z"], (s_z - NU * (s_r + s_t)) / E * nodes["z"], DISPLACEMENT, "m")
     for pressures in ("quadratic", "linear"):
-        out = bench.host("flow.nml", [("fields = 'u-p_w-p_c'", f"fields = 'u-p_w-p_c'\n   pressures = '{pressures}'")])
+        out = bench.host("flow.nml", [("pressures = 'quadratic'", f"pressures = '{pressures}'")])
         nodes = tables.columns(out / "nodes_flow.csv")
         bench.near(f"{pressures} p_w", nodes["p_w"], 10 + 20 * nodes["z"], PRESSURE, "kPa")
         bench.near(f"{pressures} p_c", nodes["p_c"], 50 - 40 * nodes["z"], PRESSURE, "kPa")

@@ -69,7 +69,7 @@ def check(bench):
     if not bench.quick:
         waves["pressure"] = wave(bench, "pressure", [("permeability = 'k'\n", "\n"), *NO_K, *upwards], "z",
                                  CONSTRAINED, dry)
-    waves["undrained"] = wave(bench, "undrained", [("fields = 'u'", "fields = 'u-p_w'"), *upwards,
+    waves["undrained"] = wave(bench, "undrained", [("fields = 'u'", "fields = 'u-p_w' pressures = 'quadratic'"), *upwards,
                                                    ("duration = 0.4", "duration = 0.2")], "z",
                               CONSTRAINED + 2.2e6 / (1 - VOIDS_SOLID), wet)
     results = {"waves": waves}

@@ -83,7 +83,7 @@ DILATANCY = f"""&scene name = 'dilatancy' geometry = 'plane_strain' {AUTO} gravi
 """
 
 # To be filled: keys of &scene, of the region farthest away, of the stage, more groups.
-PLOTS = """&scene name = 'plots' geometry = 'plane_strain' {0} fields = 'u-p_w' gravity = 0 /
+PLOTS = """&scene name = 'plots' geometry = 'plane_strain' {0} fields = 'u-p_w' pressures = 'quadratic' gravity = 0 /
 &mesh r = 0, 1, 3, 6 r_cells = 4, 4, 3 z = -1, 0 z_cells = 4 /
 &elastic name = 'soil' young = 1e4 poisson = 0.25 /
 &permeability name = 'k' intrinsic = 1e-11 law = 'constant' /

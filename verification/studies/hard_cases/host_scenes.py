@@ -146,7 +146,7 @@ def shaken_air(setting):
     """Loose sand with a tenth of its pores full of air that cannot leave, in cycles of axial load."""
     turns = [float(i) for i in range(41)]
     values = [0.0] + [(1, -1)[i % 2] for i in range(40)]
-    return ("&scene name='shaken_air' fields='u-p_w-p_c' /\n&mesh r=0,0.05 r_cells=1 z=0,0.1 z_cells=1 /\n"
+    return ("&scene name='shaken_air' fields='u-p_w-p_c' pressures='quadratic' /\n&mesh r=0,0.05 r_cells=1 z=0,0.1 z_cells=1 /\n"
             f"{sand(setting, P_a=0.02, b_1=0, b_2=0)}&fluids gas='ideal' k_w={WATER} henry={HENRY} /\n"
             "&region material='sand' retention='material' drainage='undrained' void_ratio=0.833 rho_s=2.7 /\n"
             "&initial stress='uniform' sigma=-100,-100,-100 p_w=99.989 p_c=0.011 /\n"

@@ -1,0 +1,163 @@
+! SPDX-License-Identifier: MIT
+!> Whether the ground of a scene begins in balance: the forces that nothing balances at time 0, as a stress.
+!> docs/theory/host.md section 8.
+module start_balance
+   use kinds, only: wp
+   use absorbing_boundaries, only: absorber_acts
+   use boundary_loads, only: plate_loads
+   use contact_setup, only: contacts_act
+   use initial_conditions, only: balance_t
+   use model_types, only: model_t, factor_at
+   use newton_step, only: unbalanced_forces
+   use porous_domain, only: pressures_at, is_present
+   use run_state, only: run_t
+   use scene_types, only: acts_in
+   use unknown_fields, only: DISPLACEMENTS, AT_U_Z, AT_P_W
+   implicit none (type, external)
+   private
+   public :: find_imbalance
+
+   real(wp), parameter :: NOTABLE = 0.1_wp    !< Share of the stress around a node that is an imbalance.
+   real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of the forces of the elements at a node.
+   real(wp), parameter :: SMALL = 0.01_wp     !< Share of the largest stress of the ground that is none.
+contains
+   !> The largest unbalanced stress of a prepared run; not known where a material or contact refuses the start. Of the
+   !> loads of the first stage those count that the ground carries already: what is more acts at once, on purpose.
+   subroutine find_imbalance(model, run, balance)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(balance_t), intent(out) :: balance
+      type(run_t) :: trial
+      real(wp), allocatable :: forces(:), touched(:)
+      real(wp) :: areas(2*DISPLACEMENTS, model%dofs%n), stress(model%dofs%n), unbalanced(model%dofs%n), least
+      integer :: i
+
+      trial = run
+      trial%state%v = 0.0_wp
+      trial%state%a = 0.0_wp
+      trial%next = trial%state
+      if (allocated(trial%system%contacts%interfaces)) &
+         trial%system%contacts%interfaces(:size(model%contacts))%acts = .false.
+      if (.not. unbalanced_forces(model%domain, model%dofs, trial%pattern, trial%constraint, trial%state, trial%next, &
+                                  trial%assembly, trial%system, forces)) return
+      where (abs(forces) < ROUNDING*trial%assembly%scale) forces = 0.0_wp
+      touched = 0*forces
+      if (allocated(trial%system%contacts%interfaces)) then
+         call contacts_act(model, model%stages(1), trial%system%contacts)
+         if (.not. unbalanced_forces(model%domain, model%dofs, trial%pattern, trial%constraint, trial%state, &
+                                     trial%next, trial%assembly, trial%system, touched)) return
+         touched = touched - forces
+      end if
+      call let_go_of_held(model, run, forces)
+      call add_carried_loads(model, touched, forces)
+      call look_around(model, run, areas, stress)
+      unbalanced = 0.0_wp
+      do i = 1, size(forces)
+         if (abs(forces(i)) > 0.0_wp .and. any(areas(:, i) > 0.0_wp)) unbalanced(i) = abs(forces(i))/maxval(areas(:, i))
+      end do
+      balance%known = .true.
+      ! Total stresses may cancel to rounding of effective ones and pressures.
+      least = max(SMALL*maxval(stress), ROUNDING*maxval(abs(run%state%stress)), &
+                  ROUNDING*maxval(abs(run%state%x(AT_P_W:, :))))
+      balance%matters = any(unbalanced > NOTABLE*stress .and. unbalanced > least)
+      i = maxloc(unbalanced, dim=1)
+      if (balance%matters) i = maxloc(unbalanced, dim=1, mask=unbalanced > NOTABLE*stress)
+      balance%stress = unbalanced(i)
+      balance%there = stress(i)
+      balance%x = model%domain%mesh%x(:, model%dofs%node(i))
+   end subroutine find_imbalance
+
+   !> Supports and absorbing boundaries of the first stage hold what they have, rigid bodies stand on their contacts.
+   subroutine let_go_of_held(model, run, forces)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
+      integer :: i, k, at
+
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
+            if (fix%field > DISPLACEMENTS .or. .not. acts_in(fix%stages, model%stages(1)%name)) cycle
+            do k = 1, size(nodes)
+               at = model%dofs%of(fix%field, nodes(k))
+               if (at > 0) forces(at) = 0.0_wp
+            end do
+         end associate
+      end do
+      do i = 1, size(model%absorbers)
+         if (absorber_acts(model%absorbers(i), model%stages(1))) where (run%constraint%dashpots(i)%held) forces = 0.0_wp
+      end do
+      do i = 1, size(forces)
+         if (any(model%domain%bodies == model%dofs%node(i))) forces(i) = 0.0_wp
+      end do
+   end subroutine let_go_of_held
+
+   !> Adds what contacts press with, and every load at time 0, that leaves less without balance.
+   subroutine add_carried_loads(model, touched, forces)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: touched(:)     !< (unknowns) Of contacts [kN].
+      real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
+      real(wp) :: load(size(forces)), loads(3)
+      integer :: i
+
+      call carry(touched)
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            if (.not. acts_in(one%stages, model%stages(1)%name)) cycle
+            load = one%value*one%shape
+            if (allocated(one%rise)) load = load + one%value_slope*one%rise
+            call carry(factor_at(model, one%amplitude, 0.0_wp)*load)
+         end associate
+      end do
+      do i = 1, size(model%plates)
+         associate (one => model%plates(i))
+            if (one%turns .or. one%group == 0) cycle
+            loads = plate_loads(model, one, 0.0_wp)
+            load = 0.0_wp
+            load(model%dofs%of(AT_U_Z, one%node)) = loads(2)
+            call carry(load)
+         end associate
+      end do
+   contains
+      subroutine carry(what)
+         real(wp), intent(in) :: what(:)
+         real(wp) :: free(size(what))
+
+         free = merge(what, 0.0_wp, abs(forces) > 0.0_wp)
+         if (norm2(forces + free) < norm2(forces)) forces = forces + free
+      end subroutine carry
+   end subroutine add_carried_loads
+
+   !> For every displacement the area that a stress on one side of its nodes acts on with it, along r and z, from either
+   !> side; and the largest total normal stress around it [kPa].
+   subroutine look_around(model, run, areas, stress)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(out) :: areas(:, :), stress(:)   !< (4, unknowns) [m2], (unknowns)
+      real(wp) :: part(2*DISPLACEMENTS), pressures(2), total
+      integer :: e, g, k, f, p, at
+
+      areas = 0.0_wp
+      stress = 0.0_wp
+      associate (m => model%domain)
+         do e = 1, size(m%mesh%t6, 2)
+            if (.not. is_present(run%state, e)) cycle
+            do g = 1, m%rule
+               p = (e - 1)*m%rule + g
+               pressures = pressures_at(m, e, g, run%state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
+               total = maxval(abs(run%state%stress(1:3, p) - pressures(1) - (1 - run%state%s(p))*pressures(2)))
+               do k = 1, 6
+                  associate (gp => m%gauss(g, e))
+                     part = gp%weight*[max(0.0_wp, gp%dn(k, :)), max(0.0_wp, -gp%dn(k, :))]
+                  end associate
+                  do f = 1, DISPLACEMENTS
+                     at = model%dofs%of(f, m%mesh%t6(k, e))
+                     if (at == 0) cycle
+                     areas(:, at) = areas(:, at) + part
+                     stress(at) = max(stress(at), total)
+                  end do
+               end do
+            end do
+         end do
+      end associate
+   end subroutine look_around
+end module start_balance

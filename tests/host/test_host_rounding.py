@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: MIT
+"""What an error of Newton's method is measured by where hardly any force is there: a press fit, a plate in free flight,
+very small units, very short steps of a flow; and pressures where water cannot drain yet."""
+import sys
+
+import numpy as np
+import pytest
+
+from checking import check, light, root, work
+from host_program import ran, start
+
+sys.path.insert(0, str(root / "common"))
+import tables  # noqa: E402
+
+TOLERANCE = 1e-4   # of Newton's method in these stages, so of the thrusts too
+# A plate over a third of a block, both a length wide; it begins at `z` and ends at 0.998 of the height.
+PRESSED = """&scene name = 'pressed' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, {third}, {size} r_cells = 2, 3 z = 0, {size} z_cells = 3 /
+&elastic name = 'soil' young = {young} poisson = 0.2 /
+&region material = 'soil' void_ratio = 0 rho_s = 2 /
+&stage name = 's' analysis = 'static' duration = 1 dt = {dt} tolerance = 1e-4 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'bottom' field = 'u_r' /
+&plate name = 'p' r = 0, {third} z = {z} mass = 0.001 /
+&contact name = 'c' slave = 'top' master = 'p' penalty = {penalty} search_radius = {third} /
+&history name = 'h' times = 0, 1 values = 0, 1 /
+&fix group = 'p' field = 'u_z' value = {way} history = 'h' /
+"""
+
+
+def thrust(name, start_at, size=1.0, young=2e4, stiff=1e4, dt=1.0):
+    """Over young times size, and what was said."""
+    text = PRESSED.format(third=size / 3, size=size, young=young, z=start_at * size, dt=dt,
+                          penalty=stiff * young / size, way=(0.998 - start_at) * size)
+    done = start(name, text)
+    check(f"{name} runs", done.returncode == 0, done.stderr)
+    return float(tables.rows(work / name / "contact.csv")[-1]["c.thrust"]) / young / size, done.stderr
+
+
+def test_a_plate_that_begins_inside_presses_as_one_that_is_moved_in():
+    for stiff, pressure in ((1e3, "40000"), (1e4, "400000"), (1e6, "4e7")):
+        moved, said = thrust(f"moved_{stiff:g}", 1.0, stiff=stiff, dt=0.25)
+        check("a plate that only touches is no doubt", "overlap" not in said, said)
+        inside, said = thrust(f"inside_{stiff:g}", 0.998, stiff=stiff)
+        # Linear soil: the way there does not matter. Each of the four steps and the one leave the tolerance at most.
+        check(f"penalty {stiff:g}: the same thrust", abs(inside / moved - 1) < 5 * TOLERANCE, (inside, moved))
+        check(f"penalty {stiff:g}: depth and pressure are told", "overlap by up to 0.002 m" in said
+              and f"presses there with {pressure} kPa" in said, said)
+    text = PRESSED.format(third=1 / 3, size=1, young=2e4, z=0.998, dt=1, penalty=2e8, way=0)
+    done = start("checked", text, "--check")
+    check("--check tells it as well", "overlap by up to 0.002 m" in done.stderr, done.stderr)
+
+
+def test_two_bodies_that_overlap_are_pressed_together():
+    # The same through a body in place of a plate: the blocks of one mesh, held apart by 1 mm less than nothing.
+    for name, gap, told in (("apart", 0.0, False), ("fit", -0.5e-3, True)):
+        done = start(name, SPLIT.format(gap=1 + gap))
+        check(f"{name} runs", done.returncode == 0, done.stderr)
+        check(f"{name}: overlap told {told}", ("overlap" in done.stderr) == told, done.stderr)
+    # Closed form: uniaxial strain in the block, M = E (1 - nu)/((1 + nu)(1 - 2 nu)) = 2.2222e4, shortened by 0.5 mm
+    # of 1 m over 0.4 m.
+    wanted = 2e4 * 0.8 / (1.2 * 0.6) * 0.5e-3 * 0.4
+    found = float(tables.rows(work / "fit/contact.csv")[-1]["c.thrust"])
+    check("the press fit carries the closed form", abs(found / wanted - 1) < 1e-3, (found, wanted))
+
+
+SPLIT = """&scene name = 'split' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, 0.4 r_cells = 2 z = 0, 1 z_cells = 3 /
+&elastic name = 'soil' young = 2e4 poisson = 0.2 /
+&region material = 'soil' void_ratio = 0 rho_s = 2 /
+&stage name = 's' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-4 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&plate name = 'p' outline = 0, {gap}, 0.4, {gap} mass = 0.001 /
+&contact name = 'c' slave = 'top' master = 'p' penalty = 1e8 /
+&fix group = 'p' field = 'u_z' /
+"""
+
+
+def test_units_and_sizes_do_not_change_an_answer():
+    for start_at in (1.0, 0.998):
+        one, _ = thrust("unit", start_at)
+        for size, young in ((1e-4, 2e4), (1e-4, 2e-3), (1.0, 2e-3), (1e-6, 2e-9)):
+            other, _ = thrust("small", start_at, size, young)
+            # The same iterations; where one of them ends may differ by rounding, so by a share of the tolerance.
+            check(f"{size} m, {young} kPa, from {start_at}", abs(other / one - 1) < 0.01 * TOLERANCE, (other, one))
+
+
+FLIGHT = """&scene name = 'flight' geometry = 'plane_strain' fields = 'u' gravity = {gravity} /
+&mesh r = 0, 0.4, 2 r_cells = 2, 3 z = -2, 0 z_cells = 4 /
+&elastic name = 'soil' young = 3e4 poisson = 0.3 /
+&region material = 'soil' void_ratio = 0.6 /
+&plate name = 'plate' r = 0, 0.4 z = {gap} mass = 0.4 {weight} /
+&initial group = 'plate' v_z = -0.5 /
+{ground}
+&contact name = 'face' slave = 'top' master = 'plate' penalty = 1e7 search_radius = 0.4 /
+&stage name = 'fly' analysis = 'dynamic' duration = {time} /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+"""
+
+
+@pytest.mark.parametrize("accuracy", ("1e-1",) if light else ("1e-1", "1e-2", "1e-3"))
+@pytest.mark.parametrize("gap", (0.004, 0.02, 0.15))
+def test_a_plate_in_free_flight_lands(accuracy, gap):
+    # Without weight it meets the ground, at rest and without a force, after gap/0.5 s.
+    text = FLIGHT.format(gravity=0, gap=gap, weight="", ground="", time=gap / 0.5 + 2e-3)
+    name = f"flight_{accuracy}_{gap}"
+    done = start(name, text, "--step-tolerance", accuracy)
+    check("it runs to its end", done.returncode == 0, done.stderr)
+    contact = tables.columns(work / name / "contact.csv")
+    lands = contact["time"][np.argmax(contact["face.thrust"] > 0)]
+    check("it flies freely and lands in time", contact["face.thrust"].max() > 0
+          and abs(lands - gap / 0.5) < 1e-3, (lands, gap / 0.5))
+    before = contact["time"] < gap / 0.5 - 1e-5
+    check("its velocity stays", np.abs(contact["plate.v_z"][before] + 0.5).max() < 1e-6,
+          np.abs(contact["plate.v_z"][before] + 0.5).max())
+
+
+def test_a_plate_with_a_force_on_it_lands():
+    # Thrown upwards against 9.81 m/s2, given as a force: back at the height it left, 0.5/9.81 s later each way.
+    text = FLIGHT.format(gravity=0, gap=1e-3, weight=f"force = {-0.4 * 9.81}", ground="", time=0.11).replace(
+        "v_z = -0.5", "v_z = 0.5")
+    if ran("thrown", text, "--step-tolerance", "1e-2"):
+        contact = tables.columns(work / "thrown/contact.csv")
+        lands = contact["time"][np.argmax(contact["face.thrust"] > 0)]
+        wanted = (0.5 + np.sqrt(0.25 + 2 * 9.81 * 1e-3)) / 9.81
+        check("it comes back by the parabola", abs(lands - wanted) < 1e-3, (lands, wanted))
+
+
+SHEARED = """&scene name = 'sheared' geometry = 'plane_strain' fields = 'u-p_w' gravity = 9.81 /
+&mesh r = 0, 0.4 r_cells = 1 z = -2, 0 z_cells = 2 /
+&mud name = 'sand' e_0 = 0.75 tangent = 3 /
+&permeability name = 'k' intrinsic = 2e-12 law = 'constant' /
+&region material = 'sand' permeability = 'k' /
+&initial p_w_slope = -9.81 stress = 'geostatic' surcharge = 40 k_0 = 0.5 /
+&history name = 's' times = 0, 1, 2 values = 0, 1, 0 /
+&stage name = 'shear' analysis = 'quasi_static' duration = 0.2 /
+&tie first = 'left' second = 'right' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'top' field = 'p_w' /
+&load group = 'top' kind = 'pressure' value = 40 /
+&load group = 'top' kind = 'shear_r' value = 6 history = 's' /
+&point name = 'top' r = 0 z = 0 /
+"""
+
+
+def test_a_tighter_accuracy_ends_no_run_that_a_looser_one_carries():
+    # The first step of a flow is the square of the accuracy, 1e-8 of the stage at 1e-4: rates of strain are then what
+    # rounding leaves of displacements, divided by 2e-9 s.
+    answers = {}
+    for accuracy in ("1e-2", "1e-3", "1e-4"):
+        if ran(f"sheared_{accuracy}", SHEARED, "--step-tolerance", accuracy):
+            answers[accuracy] = tables.columns(work / f"sheared_{accuracy}/histories.csv")["top.u_r"][-1]
+    check("all three end, and agree to the looser one", len(answers) == 3 and np.ptp(list(answers.values()))
+          < 1e-2 * abs(answers["1e-4"]), answers)
+
+
+# A sudden load on part of ground that cannot drain in a step.
+SUDDEN = """&scene name = 'sudden' fields = 'u-p_w' {pressures} /
+&mesh r = 0, 1, 5 r_cells = 4, 5 r_ratio = 1, 1.5 z = -5, 0 z_cells = 8 z_ratio = 0.75 /
+&elastic name = 'soil' young = 2e4 poisson = 0.2 /
+&permeability name = 'k' intrinsic = 2e-13 law = 'constant' /
+&region material = 'soil' void_ratio = 0.7 permeability = 'k' /
+&stage name = 'load' analysis = 'quasi_static' duration = 5e-3 dt = 1e-3 steps = 'given' /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&load group = 'top_1' kind = 'pressure' value = 50 /
+"""
+
+
+def test_pressures_are_linear_unless_a_scene_asks_for_quadratic_ones():
+    for name, pressures, said in (("default", "", False), ("linear", "pressures = 'linear'", False),
+                                  ("quadratic", "pressures = 'quadratic'", True)):
+        done = start(name, SUDDEN.format(pressures=pressures))
+        check(f"{name} runs", done.returncode == 0, done.stderr)
+        check(f"{name}: alternating pressures told {said}, with what helps", said == (
+            "alternate from node to node" in done.stderr and "set pressures = 'linear'" in done.stderr), done.stderr)
+        nodes = tables.columns(work / name / "nodes_load.csv")
+        on_axis = nodes["p_w"][(nodes["r"] < 1e-9) & (nodes["z"] < 0)]
+        # Compression below a load makes no suction; quadratic pressures that alternate do.
+        check(f"{name}: suction under a load {said}", (on_axis.min() < -1) == said, on_axis)
+    same = [(work / name / "nodes_load.csv").read_bytes() for name in ("default", "linear")]
+    check("linear is the default", same[0] == same[1])
+
+
+# A plate of 0.3 m on sand with water 0.15 m below its surface, half an hour of rain, then half a pulse.
+WET = """&scene name = 'wet' fields = 'u-p_w-p_c' gravity = 9.81 step_tolerance = 1e-2 /
+&mesh r = 0, 0.15, 1 r_cells = 2, 3 r_ratio = 1, 1.5 z = -1, -0.3, 0 z_cells = 2, 4 z_ratio = 0.76, 0.9 /
+&mud name = 'sand' file = '{root}/drivers/materials/toyoura.nml' /
+&permeability name = 'k' intrinsic = 1e-11 /
+&region material = 'sand' retention = 'mud' permeability = 'k' rho_s = 2.65 void_ratio = 0.78 /
+&initial p_w = -1.4715 p_w_slope = -9.81 p_c = 1.4715 p_c_slope = 9.81 stress = 'geostatic' k_0 = 0.5 /
+&history name = 'pulse' times = 1802, 1802.008, 1802.016 values = 0, 1, 0 /
+&plate name = 'plate' r = 0, 0.15 mass = 0.015 weight = 'yes' force = -6 history = 'pulse' /
+&contact name = 'face' slave = 'top' master = 'plate' stages = 'seat', 'impact' /
+&stage name = 'geostatic' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-8 zero_displacements = 'yes' /
+&stage name = 'rain' analysis = 'quasi_static' duration = 1800 /
+&stage name = 'seat' analysis = 'static' duration = 1 dt = 1 max_iterations = 50 /
+&stage name = 'impact' analysis = 'dynamic' duration = 0.009 {steps} /
+&fix group = 'plate' field = 'u_z' hold = 'yes' stages = 'geostatic', 'rain' /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_a' /
+&load group = 'top' kind = 'rain' value = 4e-6 stages = 'rain' /
+&point name = 'centre' r = 0 z = 0 /
+"""
+
+
+def test_a_wet_surface_bears_an_impact():
+    # Where the last air leaves the pores the suction has no balance that holds it, and the air's a double root.
+    deepest = {}
+    for name, steps in (("chosen", ""), *(() if light else (("given", "dt = 1e-4 steps = 'given'"),))):
+        if ran(f"wet_{name}", WET.format(root=root, steps=steps)):
+            histories = tables.columns(work / f"wet_{name}/histories.csv")
+            deepest[name] = histories["centre.u_z"].min()
+            check(f"{name}: hundreds of steps, not thousands", len(histories["time"]) < 1000, len(histories["time"]))
+    if not light:
+        check("chosen and given steps agree", len(deepest) == 2
+              and abs(deepest["chosen"] / deepest["given"] - 1) < 0.02, deepest)
