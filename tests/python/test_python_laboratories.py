@@ -447,6 +447,25 @@ def test_german_heads():
     check("pF", np.allclose(curve["suction"], [0.980665, 9.80665, 98.0665]), curve["suction"])
 
 
+def test_a_name_its_symbol_and_what_it_says_of_the_stress():
+    for head, wanted in (
+        ("Porenwasserdruck u_w [kPa]", ("u", "", "kPa")),
+        ("Porenwasserüberdruck Δu / kPa", ("u", "excess", "kPa")),
+        ("Zelldruck σ3 [bar]", ("sigma_r", "cell", "bar")),
+        ("Effektiver Zelldruck [kPa]", ("sigma_r", "effective", "kPa")),
+        ("mittlere effektive Spannung p' in kN/m²", ("p", "effective", "kPa")),
+        ("Total vertical stress, σv (psi)", ("sigma_a", "total", "psi")),
+        ("axiale Dehnung ε_1 in %", ("eps_a", "", "percent")),
+        ("Sättigungsgrad S_w", ("S_w", "", "")),
+        ("(σ1-σ3) [MPa]", ("q", "", "MPa")),
+        ("Anfangsporenzahl e_0 [-]", ("e_0", "", "")),
+        ("sigma'_3_kPa", ("sigma_r", "effective", "kPa")),
+        ("eps_v_percent_derived", ("eps_v", "", "percent")),
+    ):
+        found = head_of(head, "drained")
+        check(f"{head} is understood", (found.quantity, found.state, found.unit) == wanted, found)
+
+
 def test_units():
     suctions = np.array([0.5, 4.0, 30.0])  # [kPa]
     for unit, worth in (
