@@ -409,6 +409,12 @@ def test_blanks_between_cells_and_names_in_a_comment():
         "a comment with names above a line of names",
         written("# eps_a q e, as measured\n" + table(head, *columns, mark=" ")),
     )
+    preamble = "".join(f"Setting {i} of the cell, as chosen: yes\n" for i in range(40))
+    for mark in (" ", ",", "\t"):
+        path = written(preamble + table(head.replace(" ", mark), *columns, mark=mark))
+        drained(f"a long preamble before cells with {mark!r}", path, ("lines 1 to 40 is above the line of names",))
+        path = written(preamble + table("# " + head.replace(" ", mark), *columns, mark=mark))
+        drained("the same before names in a comment", path, ("the comment in line 41 is the line of names",))
     check(
         "numbers without any names are refused",
         "needs the column eps_a" in refusal(written(table("# nothing", *columns)), "drained"),
