@@ -257,8 +257,8 @@ contains
       end do
       do i = 1, size(forces)
          if (fault%code /= 0) exit
-         write (table%row, '(a,2(",",es14.6e3),",",a)') quoted(trim(forces(i)%name)), forces(i)%change, forces(i)%error, &
-            of_mesh(trim(forces(i)%name))
+         write (table%row, '(a,2(",",es14.6e3),",",a)') quoted(trim(forces(i)%name)), &
+            forces(i)%change, forces(i)%error, of_mesh(trim(forces(i)%name))
          call write_row(table, fault)
       end do
       call close_csv(table, fault)

@@ -88,8 +88,8 @@ contains
                    'time_ratio,limit,largest_seen,crossed_at,remark', file, fault)
       do i = 1, size(table)
          associate (t => table(i))
-            row = quoted(trim(t%name))//','//trim(merge('yes', 'no ', t%present))//','//trim(merge('on ', 'off', t%on))//','// &
-                  trim(by(t))//','
+            row = quoted(trim(t%name))//','//trim(merge('yes', 'no ', t%present))//','// &
+                  trim(merge('on ', 'off', t%on))//','//trim(by(t))//','
             if (t%influence >= 0.0_wp) then
                row = row//short(t%influence)//','//short(t%change)//','//quoted(trim(t%answer))//','//whole(t%unknowns)//','// &
                      short(t%seconds)//','
