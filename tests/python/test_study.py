@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """mud_study: errors that it tells are those of closed forms, finished runs are found again, every end has its sentence
 and its exit code."""
+
 import os
 import re
+import shutil
+import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 
@@ -12,13 +16,22 @@ from checking import build, check, needs_plain_library, needs_release, root, wor
 
 needs_plain_library()
 needs_release("studies are Python over many runs of mud_host, the same in every build")
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(root / "python"), "MUD_LIBRARY_DIR": str(build), "OMP_NUM_THREADS": "1",
-               "MUD_HOST": str(build / "host/mud_host"), "MPLBACKEND": "Agg"}
+ENVIRONMENT = {
+    **os.environ,
+    "PYTHONPATH": str(root / "python"),
+    "MUD_LIBRARY_DIR": str(build),
+    "OMP_NUM_THREADS": "1",
+    "MUD_HOST": str(build / "host/mud_host"),
+    "MPLBACKEND": "Agg",
+}
 sys.path.insert(0, str(root / "python"))
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 import tables  # noqa: E402 (checking knows its folder)
 from mud.host import HostRun  # noqa: E402
 from mud.study import histories  # noqa: E402
+
+sys.path.insert(0, str(root / "verification/studies/effects"))
+import scenes  # noqa: E402
 
 PARTS = ("change", "steps", "mesh", "newton", "stress")
 
@@ -30,7 +43,7 @@ BAR = f"""&scene name = 'bar' geometry = 'plane_strain' fields = 'u' /
 &mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 8 /
 &elastic name = 'soil' young = {MODULUS} poisson = 0 /
 &region material = 'soil' void_ratio = 0 rho_s = 2 /
-&history name = 'p' times = {', '.join(f'{t:.6f}' for t in TIMES)} values = {', '.join(f'{x:.8f}' for x in SHAPE)} /
+&history name = 'p' times = {", ".join(f"{t:.6f}" for t in TIMES)} values = {", ".join(f"{x:.8f}" for x in SHAPE)} /
 &stage name = 'wave' analysis = 'dynamic' duration = 0.03 /
 &fix group = 'left' field = 'u_r' /
 &fix group = 'right' field = 'u_r' /
@@ -57,8 +70,13 @@ def study(command, text, name, *more, code=0):
     scene = work / f"{name}.nml"
     scene.write_text(text)
     folder = work / f"study_{name}"
-    done = subprocess.run([sys.executable, "-m", "mud.study", command, scene, "--output", folder, *more],
-                          capture_output=True, text=True, env=ENVIRONMENT, cwd=work)
+    done = subprocess.run(
+        [sys.executable, "-m", "mud.study", command, scene, "--output", folder, *more],
+        capture_output=True,
+        text=True,
+        env=ENVIRONMENT,
+        cwd=work,
+    )
     check(f"{name}: exit code {code}", done.returncode == code, (done.returncode, done.stderr[-400:]))
     return done, errors_of(folder), folder
 
@@ -75,14 +93,18 @@ def errors_of(folder):
 def run_of(folder, done):
     """The folder of the run that the last line names."""
     fineness, tolerance = re.search(r"fineness (\S+), step tolerance (\S+),", done.stdout.splitlines()[-1]).groups()
-    found = [one for one in folder.glob(f"F{fineness}_a*")
-             if np.isclose(float(one.name.split("_a")[1].split("_")[0]), float(tolerance), rtol=0.06)]
+    found = [
+        one
+        for one in folder.glob(f"F{fineness}_a*")
+        if np.isclose(float(one.name.split("_a")[1].split("_")[0]), float(tolerance), rtol=0.06)
+    ]
     return min(found, key=lambda one: len(one.name))
 
 
 def pulse_in_bar(z, t):
     """Displacement of the bar by d'Alembert: the velocity p/(rho c) runs down, comes back from the base with the other
     sign, and once more from the free top. z [m], t [s] of any shape."""
+
     def travelled(tau):
         fine = np.linspace(0, PULSE, 4001)
         path = np.r_[0, np.cumsum(0.5 * (f(fine[1:]) + f(fine[:-1])) * np.diff(fine))]
@@ -91,9 +113,9 @@ def pulse_in_bar(z, t):
     def f(tau):
         return np.interp(tau, TIMES, SHAPE)
 
-    scale = -LOAD / (2 * SPEED)   # p/(rho c) [m/s], rho = 2 Mg/m3
+    scale = -LOAD / (2 * SPEED)  # p/(rho c) [m/s], rho = 2 Mg/m3
     u = np.zeros_like(t)
-    for k in range(4):   # every path down, and its image from the base
+    for k in range(4):  # every path down, and its image from the base
         u += (-1) ** k * (travelled(t - (2 * k + 1 - z) / SPEED) - travelled(t - (2 * k + 1 + z) / SPEED))
     return scale * u
 
@@ -108,11 +130,18 @@ def test_the_error_told_of_a_pulse_is_that_of_dalembert():
         told = errors[f"{name}.u_z"]["total"]
         check(f"{name}: told {told:.4f} for {true:.4f}", told / 5 < true < 3 * told and true < 6e-2, (told, true))
     parts = errors["top.u_z"]
-    check("the total is the sum of its parts", np.isclose(
-        parts["total"], sum(parts[x] for x in ("steps", "mesh", "newton", "stress")), rtol=2e-3), parts)
+    check(
+        "the total is the sum of its parts",
+        np.isclose(parts["total"], sum(parts[x] for x in ("steps", "mesh", "newton", "stress")), rtol=2e-3),
+        parts,
+    )
     last = done.stdout.splitlines()[-1]
-    check("the last line is the sum and its cost", last.startswith("total ") and all(
-        word in last for word in ("= mesh", "+ steps", "+ Newton", "+ stress integration", "times that run")), last)
+    check(
+        "the last line is the sum and its cost",
+        last.startswith("total ")
+        and all(word in last for word in ("= mesh", "+ steps", "+ Newton", "+ stress integration", "times that run")),
+        last,
+    )
     check("a picture", (folder / "accuracy.png").stat().st_size > 10000)
 
 
@@ -132,9 +161,14 @@ def test_finished_runs_are_found_again_and_others_repeated():
 def test_every_end_has_its_sentence_and_its_exit_code():
     done, _, _ = study("accuracy", BAR, "dear", "--accuracy", "1e-4", "--budget", "1.5", code=23)
     check("budget", "budget used up" in done.stderr, done.stderr)
-    done, errors, _ = study("accuracy", BLOCK.format("max_iterations = 1 cuts = 0 tolerance = 1e-14").replace(
-        "&elastic name = 'soil' young = 1e4 poisson = 0.3 /", "&mud name = 'soil' /").replace("'static'", "'quasi_static'"),
-        "fails", code=3)
+    done, errors, _ = study(
+        "accuracy",
+        BLOCK.format("max_iterations = 1 cuts = 0 tolerance = 1e-14")
+        .replace("&elastic name = 'soil' young = 1e4 poisson = 0.3 /", "&mud name = 'soil' /")
+        .replace("'static'", "'quasi_static'"),
+        "fails",
+        code=3,
+    )
     check("a run that fails", "exit code 14" in done.stderr and not errors, done.stderr)
     done, _, _ = study("accuracy", BLOCK.format("").replace("value = 10", "value = 0"), "still", code=3)
     check("nothing moves", "no named point" in done.stderr, done.stderr)
@@ -148,7 +182,7 @@ def test_a_pulse_between_two_steps_is_a_difference():
     # The rougher history steps over it and agrees at all its times.
     good, rough = object.__new__(histories.Histories), object.__new__(histories.Histories)
     t = np.linspace(0, 1, 101)
-    good.values, good.forces = {"p.u_z": (t, np.exp(-((t - 0.45) / 0.01) ** 2))}, {}
+    good.values, good.forces = {"p.u_z": (t, np.exp(-(((t - 0.45) / 0.01) ** 2)))}, {}
     rough.values, rough.forces = {"p.u_z": (t[::10], np.zeros(11))}, {}
     check("a pulse that is missed", histories.distance(rough, good, "p.u_z") > 0.5)
 
@@ -159,4 +193,109 @@ def test_cubics_between_steps_err_less_than_straight_lines():
     cubics = np.max(np.abs(histories.between(t, np.sin(t), at) - np.sin(at)))
     lines = np.max(np.abs(np.interp(at, t, np.sin(t)) - np.sin(at)))
     check("a tenth of the error", cubics < lines / 10, (cubics, lines))
-    check("no overshoot", np.max(histories.between(np.arange(4.0), np.array([0.0, 0, 1, 1]), np.linspace(0, 3, 99))) <= 1)
+    check(
+        "no overshoot", np.max(histories.between(np.arange(4.0), np.array([0.0, 0, 1, 1]), np.linspace(0, 3, 99))) <= 1
+    )
+
+
+# Consolidation of a column of 1 m that drains at its top: c_v = k/eta_w E_oed = 1e-12/1e-6*12000 = 0.012 m2/s.
+COLUMN = """&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w' pressures = 'linear' /
+&mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 8 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&fluids k_w = 1e12 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
+&region material = 'soil' void_ratio = 0.6 permeability = 'k' /
+&stage name = 'load' analysis = 'quasi_static' duration = 40 {} /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&load group = 'top' kind = 'pressure' value = 100 /
+&point name = 'base' r = 0 z = 0 /
+&point name = 'top' r = 0 z = 1 /
+"""
+
+
+def terzaghi(z, t):
+    """Excess pressure at a height above the closed base [kPa]."""
+    m = np.pi / 2 * (2 * np.arange(200)[:, None] + 1)
+    return 100 * np.sum(2 / m * np.sin(m * (1 - z)) * np.exp(-(m**2) * 0.012 * t), axis=0)
+
+
+def test_the_error_told_of_a_consolidation_is_that_of_terzaghi():
+    for name, steps in (("controlled", ""), ("given", "dt = 0.4 steps = 'given'")):
+        done, errors, folder = study(
+            "accuracy", COLUMN.format(steps), name, "--goals", "base.p_w", "--accuracy", "1e-2"
+        )
+        table = HostRun(run_of(folder, done)).histories
+        late = table["time"] > 1  # the jump at the start is within one step
+        true = np.max(np.abs(table["base.p_w"] - terzaghi(0.0, table["time"]))[late]) / 100
+        told = errors["base.p_w"]["total"]
+        check(f"{name} steps: told {told:.5f} for {true:.5f}", true < 3 * told and true < 2e-2, (told, true))
+
+
+def test_a_price_tells_what_ten_three_and_one_per_cent_cost():
+    done, _, folder = study("price", BAR, "bar", "--budget", "300")
+    rows = tables.rows(folder / "price.csv")
+    check("a row each", [float(row["accuracy"]) for row in rows] == [0.1, 0.03, 0.01], rows)
+    check(
+        "measured, and what holds less costs more",
+        all(row["state"] == "met" and float(row["total"]) <= float(row["accuracy"]) for row in rows)
+        and float(rows[0]["seconds"]) <= float(rows[2]["seconds"]),
+        rows,
+    )
+    check("a recipe each", done.stdout.count("mud_host") == 3 and "--step-tolerance" in done.stdout, done.stdout)
+    check("a picture", (folder / "price.png").stat().st_size > 10000)
+    done, errors, _ = study("accuracy", BAR, "bar", "--accuracy", "1e-2")
+    check("the runs serve other studies", done.stdout.count("found:") >= 3, done.stdout)
+    # Where the budget ends before 1 %, it is expected from what was measured.
+    dear = work / "study_bar_dear"
+    shutil.copytree(folder, dear, ignore=lambda _, names: [n for n in names if n.startswith("F2_")])
+    done, _, _ = study("price", BAR, "bar_dear", "--budget", "1e-3", code=23)
+    check("expected", "1 %" in done.stdout and "expected" in done.stdout, done.stdout + done.stderr)
+
+
+def test_interrupted_studies_go_on():
+    scene = work / "interrupted.nml"
+    scene.write_text(BAR)
+    words = [
+        sys.executable,
+        "-m",
+        "mud.study",
+        "accuracy",
+        scene,
+        "--accuracy",
+        "1e-4",
+        "--output",
+        work / "interrupted",
+    ]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    while len(list((work / "interrupted").glob("*/run.json"))) < 4 and process.poll() is None:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate()
+    check("interrupted", process.returncode == 130 and "the same command goes on" in told, (process.returncode, told))
+    done = subprocess.run([*words, "--budget", "0.1"], capture_output=True, text=True, env=ENVIRONMENT)
+    check("and goes on", done.stdout.count("found:") >= 4, done.stdout)
+
+
+def test_effects_are_kept_and_dropped_as_they_matter():
+    for scene in scenes.TRAPS + scenes.EASY:
+        name = scene.name.replace(" ", "_").replace(",", "")
+        text = scene.text.replace("{materials}", str(root / "drivers/materials"))
+        _, _, folder = study("effects", text, name, "--share", "inf")
+        table = {row["effect"]: row for row in tables.rows(folder / "effects.csv")}
+        for effect, wanted in [(x, "on") for x in scene.keeps] + [(x, "off") for x in scene.drops]:
+            check(f"{name}: {effect} is {wanted}", table.get(effect, {}).get("on") == wanted, table.get(effect))
+
+
+def test_no_pilot_is_run_for_a_short_run():
+    slow = next(s for s in scenes.EASY if s.name == "slow ramp, wet")
+    done, _, folder = study("effects", slow.text, "short", "--run")
+    check("it says why", "less than 30 s" in done.stdout and "no effect is tried" in done.stdout, done.stdout)
+    check(
+        "and has run what the scene asks for",
+        (folder / "run/histories.csv").exists() and "fields = 'u-p_w-p_c'" in (folder / "reduced.nml").read_text(),
+    )
+    done, errors, _ = study("run", slow.text, "answer", "--accuracy", "3e-2")
+    check("one command gives the answer", errors and "met" in done.stdout.splitlines()[-1], done.stdout)
