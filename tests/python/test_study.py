@@ -178,6 +178,61 @@ def test_every_end_has_its_sentence_and_its_exit_code():
     check("half a scene", "the group &mesh is missing" in done.stderr, done.stderr)
 
 
+# A host whose answers are 1 + an error of its mesh and of its steps, by a formula in F and a.
+FAKE = """#!{python}
+import math, pathlib, sys
+words = sys.argv
+F, a = (float(words[words.index(x) + 1]) for x in ("--fineness", "--step-tolerance"))
+folder = pathlib.Path(words[words.index("--output") + 1])
+u = {formula}
+n = max(2, int(2 * F) + 1)
+(folder / "histories.csv").write_text("time,p.u_z\\n" + "".join(f"{{t / 20}},{{u * t / 20}}\\n" for t in range(21)))
+(folder / "nodes_load.csv").write_text("r,z\\n" + "".join(f"{{i / (n - 1)}},{{i / (n - 1)}}\\n" for i in range(n)))
+{more}
+"""
+
+
+def fake(name, formula, *more, code, extra=""):
+    host = work / f"host_{name}"
+    host.write_text(FAKE.format(python=sys.executable, formula=formula, more=extra))
+    host.chmod(0o755)
+    text = BLOCK.format("").replace("r_cells = 2", "r_cells = 8").replace("z_cells = 2", "z_cells = 8")
+    return study("accuracy", text, name, "--host", str(host), *more, code=code)
+
+
+def test_errors_of_a_known_law_are_told():
+    for name, formula, true in (
+        ("smooth", "1 + 0.2 * F**-2 + 0.5 * a", lambda F, a: 0.2 * F**-2 + 0.5 * a),
+        ("first", "1 - 0.1 / F - 0.5 * a", lambda F, a: 0.1 / F + 0.5 * a),
+        ("slow", "1 + 0.1 / F + 0.05 * a**0.5", lambda F, a: 0.1 / F + 0.05 * a**0.5),
+        ("exact", "1.0", lambda F, a: 0.0),
+    ):
+        done, errors, _ = fake(name, formula, code=0)
+        F, a = map(float, re.search(r"fineness (\S+), step tolerance (\S+),", done.stdout.splitlines()[-1]).groups())
+        told = errors["p.u_z"]["total"]
+        check(f"{name}: told {told:.4f} for {true(F, a):.4f}", told / 5 <= true(F, a) <= 2 * told, (F, a))
+
+
+def test_what_has_no_limit_does_not_converge():
+    done, errors, _ = fake("grows", "1 + 0.1 * math.log2(F)", code=22)
+    check(
+        "the mesh", "does not converge" in done.stdout.splitlines()[-1] and errors["p.u_z"]["mesh"] > 0.01, done.stdout
+    )
+    done, errors, _ = fake("noise", "1 + 0.05 * math.sin(1e3 * math.log(a) + 7 * F) + 0.02 / F", code=22)
+    check("the steps", "does not converge" in done.stderr and errors["p.u_z"]["steps"] > 0.01, done.stdout)
+
+
+def test_a_run_that_says_that_shear_localises_ends_the_study():
+    extra = 'sys.stderr.write("mud_host: warning: shear is localised at (0.1, -0.2) m\\n") if F >= 2 else None'
+    done, errors, folder = fake("bands", "1 + 0.2 / F", code=21, extra=extra)
+    check(
+        "its words are told",
+        "shear is localised at (0.1, -0.2) m" in done.stderr and "viscosity" in done.stderr,
+        done.stderr,
+    )
+    check("and no finer mesh is run", errors and not list(folder.glob("F4_*")), sorted(folder.glob("F*")))
+
+
 def test_a_pulse_between_two_steps_is_a_difference():
     # The rougher history steps over it and agrees at all its times.
     good, rough = object.__new__(histories.Histories), object.__new__(histories.Histories)

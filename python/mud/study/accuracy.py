@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..errors import InputError
 from .histories import distance
 from .runs import LOOSEST, BudgetUsedUp, Failed, Key, Run, Scene
 
@@ -24,10 +25,13 @@ HALF_DECADE = 10**0.5
 NOISE = 4 / 3  # distances that fall by less from mesh to mesh show no limit
 # Share of the last distance that is told, however fast distances fall, and most times it: one ratio shows r poorly.
 LEAST, MOST = 1 / 3, 2.0
+LEAST_STEPS, MOST_STEPS = 1 / 2, 1.5  # the same of the steps, whose order in the tolerance is 1 at most
 UNKNOWN_ORDER = 0.5  # of the distance of two meshes is told: orders from 1 to 3.3 leave all of it to a ninth
 USUAL_MESH, USUAL_STEPS = 1.5, 0.8  # orders in the cells and the tolerance, to choose the next pair
 SMALL = 1 / 30  # of what is asked: steps that err less on one mesh are not measured again on the next
 SOLVE_SHARE = 1 / 3  # of what is asked: from here on Newton's method and the stress integration are tightened
+
+REFUSED = (2, 10, 11, 12, 13)  # exit codes of mud_host: what the scene says cannot be run
 
 MET, LOCALISED, NOT_CONVERGING, BUDGET, FAILS = "met", "localised", "does not converge", "budget used up", "runs fail"
 EXIT_CODES = {MET: 0, FAILS: 3, LOCALISED: 21, NOT_CONVERGING: 22, BUDGET: 23}
@@ -158,7 +162,7 @@ class Study:
         if rougher is None or looser(loose) <= loose * 1.01:
             return last
         ratio = distance(rougher.histories, rough.histories, name) / max(last, 1e-300)
-        return last * float(np.clip(1 / max(ratio - 1, 1e-3), LEAST, 1))
+        return last * float(np.clip(1 / max(ratio - 1, 1e-3), LEAST_STEPS, MOST_STEPS))
 
     def of_mesh(self, coarse, fine, steps, name):
         """Error by the mesh, its order, and whether distances fall. Distances that fall by r leave last/(r - 1)."""
@@ -237,7 +241,7 @@ class Study:
         # Of whole half decades, so that runs serve studies of several accuracies.
         tolerance = min(10 ** (round(2 * np.log10(self.accuracy)) / 2), LOOSEST / HALF_DECADE)
         coarse = can_halve(self.scene)
-        first = ""
+        first = None
         for fineness, a in (
             *(((1.0, tolerance),) if coarse else ()),
             (2.0, tolerance),
@@ -251,10 +255,12 @@ class Study:
                 self.measure(fineness, a)
                 return ""
             except Failed as failure:
-                first = first or str(failure)
+                first = first or failure
             except _SameMesh:
                 pass
-        return first or "finer meshes have the same nodes"
+        if first and first.code in REFUSED:
+            raise InputError(str(first))
+        return str(first or "finer meshes have the same nodes")
 
     def _try(self, *key):
         """A run for the order of the mesh, which need not come to its end."""
@@ -321,7 +327,7 @@ class Study:
         if not tries:
             if dear:
                 return None, (BUDGET, "every run that would come nearer ends after the budget")
-            failed = list(scene.failed.values())
+            failed = [str(x) for x in scene.failed.values()]
             return None, (FAILS, failed[-1] if failed else "no run that is left comes nearer")
         if held:
             best = min(held, key=lambda x: x[1])

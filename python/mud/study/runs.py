@@ -38,7 +38,11 @@ CUT_OFF = "it takes more processor time than it may"
 
 
 class Failed(Exception):
-    """A run that ended before its time; the sentence says why."""
+    """A run that ended before its time; the sentence says why, the code is that of mud_host."""
+
+    def __init__(self, words: str, code: int = 0):
+        super().__init__(words)
+        self.code = code
 
 
 class BudgetUsedUp(Exception):
@@ -100,7 +104,7 @@ class Scene:
                 raise InputError(f"{self.path}: the group &{name} is missing")
         self.began, self.budget = time.monotonic(), budget
         self.runs: dict[Key, Run] = {}
-        self.failed: dict[Key, str] = {}
+        self.failed: dict[Key, Failed] = {}
         self.made, self.lost = 0, 0.0  # runs of this call; processor time of runs that failed [s]
         self._origin = self._fingerprint()
 
@@ -117,7 +121,7 @@ class Scene:
     @property
     def spent(self) -> float:
         """Processor time of all finished runs, also of those made earlier [s]."""
-        return sum(run.processor for run in self.runs.values())
+        return self.lost + sum(run.processor for run in self.runs.values())
 
     def say(self, words: str, end: str = "\n"):
         if not self.quiet:
@@ -131,15 +135,14 @@ class Scene:
         processor time that it may take [s]."""
         key = Key(float(f"{fineness:.6g}"), float(f"{tolerance:.4g}"), newton, stress, tuple(settings))
         if key in self.failed:
-            raise Failed(self.failed[key])
+            raise self.failed[key]
         if key not in self.runs:
             told = self._found(key, most) or self._make(key, keep, most)
             if told["code"] not in COMPLETE:
-                self.failed[key] = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
-                if told["code"] == -signal.SIGXCPU:
-                    self.failed[key] = CUT_OFF
+                words = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
+                self.failed[key] = Failed(CUT_OFF if told["code"] == -signal.SIGXCPU else words, told["code"])
                 self.lost += told["processor"]
-                raise Failed(self.failed[key])
+                raise self.failed[key]
             folder = self.folder / key.folder
             self.runs[key] = Run(key, told["seconds"], told["processor"], Histories(folder), told["localised"])
         return self.runs[key]

@@ -10,9 +10,9 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 sys.path.insert(0, str(ROOT / "python"))
-from mud.study.accuracy import MET, Study  # noqa: E402
+from mud.study.accuracy import Study  # noqa: E402
 from mud.study.histories import distance  # noqa: E402
-from mud.study.runs import Failed, Scene  # noqa: E402
+from mud.study.runs import BudgetUsedUp, Failed, Scene  # noqa: E402
 
 SCENES = [ROOT / "verification/studies/cost/scenes" / f"{name}.nml" for name in ()] + [
     ROOT / "verification/studies/price" / f"{name}.nml" for name in ("strip", "slope", "shaken", "ring", "rain_layers")]
@@ -21,15 +21,13 @@ HEAD = ("scene", "asked", "state", "fineness", "step_tolerance", "answer", "told
 
 
 def truth(scene, pair, budget):
-    """The finest run that the budget allows: four times the cells with a hundredth of the tolerance, or twice, a tenth."""
-    fine = Scene(scene.path, scene.folder / "truth", scene.host, budget, quiet=True)
-    for cells, tolerance in ((4, 0.01), (4, 0.1), (2, 0.03), (2, 0.1)):
+    """The finest run that the budget allows: four times the cells, or twice, with a tenth of the tolerance."""
+    for cells, tolerance in ((4, 0.1), (2, 0.1)):
+        fine = Scene(scene.path, scene.folder / "truth", scene.host, budget, quiet=True)
         try:
             return fine.run(pair.fineness * cells, max(pair.tolerance * tolerance, 1e-7), 1, int("mud" in scene.groups))
-        except Failed:
+        except (Failed, BudgetUsedUp):
             continue
-        except Exception:
-            fine.budget += budget
     return None
 
 
