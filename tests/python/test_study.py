@@ -344,13 +344,53 @@ def test_effects_are_kept_and_dropped_as_they_matter():
             check(f"{name}: {effect} is {wanted}", table.get(effect, {}).get("on") == wanted, table.get(effect))
 
 
-def test_no_pilot_is_run_for_a_short_run():
-    slow = next(s for s in scenes.EASY if s.name == "slow ramp, wet")
-    done, _, folder = study("effects", slow.text, "short", "--run")
-    check("it says why", "less than 30 s" in done.stdout and "no effect is tried" in done.stdout, done.stdout)
+def strip(cells):
+    """Ground under a strip that leaves open inertia, fields and weight; every axis has so many cells."""
+    return f"""&scene name = 'strip' geometry = 'plane_strain' effects = 'auto' gravity = 0 accuracy = 1e-2 /
+&mesh r = 0, 4 r_cells = {cells} z = -4, 0 z_cells = {cells} /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&retention name = 'c' P_a = 5 omega = 0 n = 2 m = 1 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
+&region material = 'soil' void_ratio = 0.6 permeability = 'k' retention = 'c' /
+&history name = 'h' times = 0, 100 values = 0, 1 /
+&stage name = 'load' duration = 2000 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&fix group = 'top' field = 'p_a' /
+&load group = 'top' kind = 'pressure' value = 10 history = 'h' /
+&point name = 'centre' r = 0 z = 0 /
+&point name = 'deep' r = 0 z = -1 /
+"""
+
+
+def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
+    done, _, folder = study("effects", strip(4), "coarse", "--run")
     check(
-        "and has run what the scene asks for",
+        "no pilot where cells cannot be spared",
+        "0 pilots" in done.stdout and "no effect is tried" in done.stdout,
+        done.stdout,
+    )
+    check(
+        "what is open starts as the keys ask, and runs",
         (folder / "run/histories.csv").exists() and "fields = 'u-p_w-p_c'" in (folder / "reduced.nml").read_text(),
     )
+    done, _, _ = study("effects", strip(40), "short")
+    check("one where the run is short", "1 pilots" in done.stdout and "less than 30 s" in done.stdout, done.stdout)
+    done, _, folder = study("effects", strip(80), "long")
+    spent, quote = map(float, re.search(r"pilots, (\S+) s .* quoted at (\S+) s", done.stdout).groups())
+    check("a twentieth of a long one", quote > 30 and spent <= quote / 20, (spent, quote))
+    table = {row["effect"]: row["on"] for row in tables.rows(folder / "effects.csv")}
+    check(
+        "water stays, suction and inertia go",
+        (table["p_w"], table["p_c"], table["inertia in load"]) == ("on", "off", "off"),
+        table,
+    )
+    check("the scene says so", "fields = 'u-p_w'" in (folder / "reduced.nml").read_text())
+
+
+def test_one_command_gives_the_answer():
+    slow = next(s for s in scenes.EASY if s.name == "slow ramp, wet")
     done, errors, _ = study("run", slow.text, "answer", "--accuracy", "3e-2")
     check("one command gives the answer", errors and "met" in done.stdout.splitlines()[-1], done.stdout)

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 from ..errors import InputError
-from .accuracy import BUDGET, EXIT_CODES, MET, Study, share, sum_of, write_table
+from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
 from .effects import SHARE, Effects, Silent
 from .runs import Failed, Scene
 from .pictures import accuracy_picture, effects_picture, price_picture
@@ -108,10 +108,11 @@ def accuracy(scene: Scene, args, folder=None) -> int:
 def price(scene: Scene, args) -> int:
     """The study `price`: pairs for 10, 3 and 1 %; what the budget does not reach is expected from those."""
     study = Study(scene, LEVELS[0], args.goals)
-    rows = []
+    rows, result = [], None
     for level in LEVELS:
         study.accuracy = level
-        result = study.search() if not rows or rows[-1][1] == MET else result
+        if result is None or result.state == MET:
+            result = study.search()
         if not result.pairs:
             print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr)
             return EXIT_CODES[result.state]
@@ -179,7 +180,8 @@ def reduced(scene: Scene, args) -> pathlib.Path:
         study.write(scene.folder / "effects.csv")
         effects_picture(scene.folder / "effects.png", rows, study.tolerance)
     write_scene(study.reduced() if rows else settled(plain(scene.groups)), path, scene.path.parent)
-    scene.say(f"{study.pilots} pilots, {study.spent:.3g} s of processor time; the scene of the run: {path}")
+    quoted = f", for a run quoted at {study.quote:.3g} s" if study.quote else ""
+    scene.say(f"{study.pilots} pilots, {study.spent:.3g} s of processor time{quoted}; scene of the run: {path}")
     return path
 
 

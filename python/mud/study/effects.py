@@ -31,6 +31,8 @@ NO_ANSWER, NO_PRESSURE = 1e-4, 1e-3  # smaller ranges are no answers: of the lar
 TOLERANCE = 0.01
 OVER_SHARE = "not tried: pilots would cost too much"
 ADDED = ("inertia", "gravity")
+CELLS, GROWTH = 2.2, 2**0.2  # time grows with the cells to this power, and by this factor at half the step tolerance
+LEAST_PILOTS = 4  # that of the scene, once more, and one of two effects
 
 
 class Silent(Exception):
@@ -151,7 +153,20 @@ class Effects:
         elements = 2 * int(np.sum(mesh["r_cells"])) * int(np.sum(mesh["z_cells"]))
         if elements == 2:
             return 1
-        return 1 + sum(elements > n for n in MANY_ELEMENTS)
+        cells = 1 + sum(elements > n for n in MANY_ELEMENTS)
+        # Where pilots may cost a share of the run they are as coarse as a mesh of few tens of elements.
+        return cells if self.share == math.inf else max(cells, math.isqrt(elements // MANY_ELEMENTS[0]))
+
+    def _afford(self):
+        """Silent where the mesh and the steps of pilots cannot be so much coarser that the least of them are within their
+        share: then the first one would be lost."""
+        times = self.cells**CELLS * GROWTH ** math.log2(LEAST_TOLERANCE / self.accuracy)
+        for stage in many(self.reading, "stage"):
+            if self._is_given(stage):
+                longer = min(2**LEVELS, max(1.0, stage["duration"] / (stage["dt"] * LEAST_STEPS)))
+                times = max(times, self.cells**CELLS * longer)
+        if self.share * times < LEAST_PILOTS:
+            raise Silent(f"pilots would take more than {100 * self.share:g} % of the run, as few cells can be spared")
 
     def base_of(self, reading, most=math.inf):
         """The pilot of a reading, its steps halved until that changes the answers little, and run once more with these
@@ -184,15 +199,15 @@ class Effects:
 
     def _quote(self, pilot, level, before):
         """Processor time of the run, from that of a pilot: elements, and steps as they grew from pilot to pilot."""
-        more = math.sqrt(2.0)
+        more = GROWTH
         if before and before[1] > level and before[0].steps:
-            more = min(2.0, max(1.0, (pilot.steps / before[0].steps) ** (1 / (before[1] - level))))
+            more = min(math.sqrt(2.0), max(1.0, (pilot.steps / before[0].steps) ** (1 / (before[1] - level))))
         tolerances = math.log2(min(2**level * self.accuracy, LEAST_TOLERANCE) / self.accuracy)
         given = [s for s in many(self.reading, "stage") if self._is_given(s)]
         steps = more ** max(tolerances, 0.0)
         if given:
             steps = max(s["duration"] / s["dt"] for s in given) / max(1, pilot.steps)
-        self.quote = pilot.processor * self.cells**2.3 * max(steps, 1.0)
+        self.quote = pilot.processor * self.cells**CELLS * max(steps, 1.0)
         if self.share != math.inf and self.quote < LEAST_RUN:
             raise Silent(f"the run is quoted at {self.quote:.2g} s of processor time, less than {LEAST_RUN:g} s")
 
@@ -231,6 +246,7 @@ class Effects:
     def search(self) -> list[Effect]:
         """The table: what is on in the run. Silent where pilots may not be run; Failed where the scene's own fails."""
         why = ""
+        self._afford()
         try:
             self.base = self.base_of(self.reading)
         except Failed as failure:
