@@ -14,6 +14,14 @@ class TableError(ValueError):
     """A table that cannot be read: which file, where in it, what was found and what belongs there."""
 
 
+def decoded(raw):
+    """Bytes as text, without a byte-order mark. A title in Latin-1 goes into the results as the case has it."""
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
 def rows(path, header_in_comment=False):
     """Rows as dictionaries of text. With `header_in_comment` the last comment before the rows names the columns."""
     return _rows(_text(path), header_in_comment, path)[1]
@@ -83,10 +91,7 @@ def _text(path):
     raw = pathlib.Path(path).read_bytes()
     if b"\0" in raw or raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
         raise TableError(f"{path} is not a text in UTF-8 or Latin-1")
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError:   # a title in Latin-1 goes into the results as the case has it
-        return raw.decode("latin-1")
+    return decoded(raw)
 
 
 def _rows(text, header_in_comment, path):

@@ -21,7 +21,8 @@ def read_result(path):
     if path.suffix in (".h5", ".hdf5"):
         import h5py
         with h5py.File(path) as file:
-            return ({k: v.decode() for k, v in file.attrs.items()}, {k: np.array(v, float) for k, v in file.items()})
+            return ({k: tables.decoded(v) for k, v in file.attrs.items()},
+                    {k: np.array(v, float) for k, v in file.items()})
     facts = {}
     for line in tables.comments(path):
         name, _, text = line.rpartition(": ") if line.startswith("not") else line.partition(": ")

@@ -83,10 +83,9 @@ contains
             end do
          end do
          if (pairs > 0) call add_warning('The mesh has '//whole(pairs)//' pairs of boundary nodes at one place '// &
-            'that nothing joins, the first at ('//short(x(1, first))//', '//short(x(2, first))// &
-            ') m: the ground is slit '// &
-            'there. Merge them (Coherence in Gmsh, or gmsh.model.mesh.removeDuplicateNodes()), or give a &contact '// &
-            'or &tie between the two sides.', warnings)
+            'that nothing joins, the first at ('//short(x(1, first))//', '//short(x(2, first))//') m: the ground '// &
+            'is slit there. Merge them (Coherence in Gmsh, or gmsh.model.mesh.removeDuplicateNodes()), or give a '// &
+            '&contact or &tie between the two sides.', warnings)
       end associate
    end subroutine look_at_slits
 

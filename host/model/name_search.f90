@@ -21,9 +21,8 @@ contains
                                  listed([(mesh%groups(i)%name, i=1, size(mesh%groups))])//'.')
       if (group == 0) return
       if (size(mesh%groups(group)%nodes) == 0) then
-         call raise(fault, EXIT_GROUP, place//'the group '''//trim(name)// &
-            ''' of the mesh is empty: no element, edge '// &
-                    'or point has its physical number; assign it again in Gmsh.')
+         call raise(fault, EXIT_GROUP, place//'the group '''//trim(name)//''' of the mesh is empty: no element, '// &
+                    'edge or point has its physical number; assign it again in Gmsh.')
       else if (count([(mesh%groups(i)%name == name, i=1, size(mesh%groups))]) > 1) then
          call raise(fault, EXIT_GROUP, place//'the mesh has groups '''//trim(name)//''' of several dimensions '// &
                     '(points, curves, surfaces), and this could mean each of them; give them names of their own.')

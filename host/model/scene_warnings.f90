@@ -5,7 +5,6 @@ module scene_warnings
    use kinds, only: wp
    use faults, only: at_line
    use boundary_warnings, only: list_boundary_warnings
-   use generalised_alpha, only: STATIC, DYNAMIC
    use idle_keys, only: list_idle_keys, add_warning, WARNING_LENGTH
    use initial_conditions, only: tension_t, balance_t
    use key_schema, only: line_of, given, get_number
@@ -14,6 +13,7 @@ module scene_warnings
    use model_types, only: model_t
    use namelists, only: group_t
    use scene_types, only: scene_t, place_of
+   use start_look, only: list_start_warnings
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole
    use triangle_mesh, only: mesh_t
@@ -64,7 +64,7 @@ contains
       call look_at_regions(scene, model, warnings)
       call look_at_materials(scene, model, warnings)
       call look_at_initials(model, tension, warnings)
-      call look_at_balance(model, balance, warnings)
+      call list_start_warnings(model, balance, warnings)
       call list_boundary_warnings(model, warnings)
       call look_at_retentions(scene, model, warnings)
       call list_idle_keys(scene, warnings)
@@ -212,26 +212,6 @@ contains
          end associate
       end do
    end subroutine look_at_initials
-
-   !> A start that is not in balance. Where no &initial gives a stress, a static stage finds the balance.
-   subroutine look_at_balance(model, balance, warnings)
-      type(model_t), intent(in) :: model
-      type(balance_t), intent(in) :: balance
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
-      character(:), allocatable :: share, why
-
-      if (.not. balance%matters) return
-      if (model%stages(1)%kind == STATIC .and. .not. any(model%initials%geostatic .or. model%initials%uniform)) return
-      share = ', where there is no stress'
-      if (balance%there > 0.0_wp) share = ', '//short(100*balance%stress/balance%there)//' % of the stress there'
-      why = ''
-      if (model%stages(1)%kind == DYNAMIC .and. size(model%absorbers) > 0) why = ' The dashpots of &absorbing '// &
-         'hold no weight: find the balance in a static stage with a &fix that is limited to it.'
-      call add_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
-                       short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
-                       '. Stage '//trim(model%stages(1)%name)//' begins with what they set free; compare rho_s, '// &
-                       'surface, surcharge, k_0 and p_w with the loads of the start.'//why, warnings)
-   end subroutine look_at_balance
 
    !> Names of curves that are not looked up because the scene has no suction.
    subroutine look_at_retentions(scene, model, warnings)

@@ -113,9 +113,10 @@ contains
    end function good_enough
 
    !> Whether what further corrections would change of a pressure is hidden by the errors of the steps, as integrators
-   !> of differential equations judge their iterations (Hairer & Wanner 1996, section IV.8): corrections that fall by a share
-   !> s each add up to s/(1 - s) of the last one. Where air vanishes from pores, or comes back, the balance of air has a
-   !> double root: corrections halve, and its forces vanish with it, so that the residual is never small beside them.
+   !> of differential equations judge their iterations (Hairer & Wanner 1996, section IV.8): corrections that fall by a
+   !> share s each add up to s/(1 - s) of the last one. Where air vanishes from pores, or comes back, the balance of air
+   !> has a double root: corrections halve, and its forces vanish with it, so that the residual is never small beside
+   !> them.
    !> docs/theory/host.md section 5.1.
    pure function hidden(control, log)
       type(control_t), intent(in) :: control

@@ -24,7 +24,7 @@ ELSEWHERE = {
     "gcc host.c": ("tests/umat/test_install.py", "one_gcc_line_with_pkg_config_links_the_shared_library"),
     "gfortran host.f90": ("tests/umat/test_install.py", "one_gfortran_line_with_pkg_config_links_the_archive"),
     "pip install .": ("tests/python/test_pip_install.py", '"pip", "install"'),
-    "pip install '.[": ("scripts/before_release", "pip install '.[plots,host,frames,calibrate]'"),
+    "pip install '.[": ("scripts/before_release", "pip install '.[plots,host,frames,calibrate,study]'"),
     "mud_check_law libsoil.so": ("tests/python/test_check_law.py", "mud.check_law"),
     "mud_calibrate": ("tests/python/test_python_calibration.py", "mud.calibration.command"),
     "build/release/host/mud_host my.nml --output out --restart": ("tests/host/test_host_output.py", '"--restart"'),

@@ -123,3 +123,124 @@ def test_a_slope_begins_in_balance_as_the_page_says():
     rows = moved["slope"][1]
     check("the stage finds the balance", abs(rows["crest.s_rr"][1] - rows["crest.s_rr"][0]) > 0.1, rows["crest.s_rr"])
     check("nothing moves afterwards", abs(rows["crest.u_r"][-1]) + abs(rows["crest.u_z"][-1]) < 1e-6, rows["crest.u_r"])
+
+
+WET = """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 10 /
+&mesh r = 0, 1 r_cells = 1 z = -4, 0 z_cells = 4 /
+&elastic name = 'e' young = 1e4 poisson = 0.3 /
+&retention name = 'c' law = 'van_genuchten' alpha = 0.1 n = 2 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
+&region material = 'e' permeability = 'k' retention = 'c' void_ratio = 0.6 rho_s = 2.5 /
+&initial p_w = -20 p_w_slope = -10 p_c = 20 p_c_slope = 10 stress = 'geostatic' surface = 0 /
+&stage name = 's' analysis = 'quasi_static' duration = 10 dt = 1 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+"""
+
+
+def lines_of(name, text, *more):
+    """What is warned of, with --check and in a run."""
+    checked, ran = start(name, text, "--check"), start(name, text, *more)
+    warned = [[line for line in done.stderr.splitlines() if line.startswith("mud_host: warning: ")]
+              for done in (checked, ran)]
+    check(f"{name}: --check", checked.returncode == 0, checked.stderr)
+    check(f"{name}: told by the run as by --check", warned[0] == warned[1][:len(warned[0])], warned)
+    return warned[0]
+
+
+def test_air_that_nobody_asked_for():
+    check("suction that balances the tension of water is no doubt", lines_of("air", WET) == [])
+    for old, words in (("p_c = 20 p_c_slope = 10 ", "p_a = p_w + p_c = -20 kPa at z = 0 m"),
+                       ("p_c = 20 p_c_slope = 10 ", "Did you mean p_c = 20, p_c_slope = 10?"),
+                       ("p_w = -20 p_w_slope = -10 ", "Did you mean p_w = -20, p_w_slope = -10?"),
+                       (" p_c_slope = 10", "= 40 kPa at z = -4 m")):
+        check(f"{old!r} stands there", old in WET)
+        told_of = [line for line in lines_of("air", WET.replace(old, "")) if "the air begins with p_a" in line]
+        check(f"without {old!r}", len(told_of) == 1 and words in told_of[0], told_of)
+    asked = WET.replace("p_c = 20 p_c_slope = 10 ", "")
+    for line in ("&fix group = 'top' field = 'p_a' value = -20 /", "&load group = 'top' kind = 'air' value = 1e-9 /"):
+        check(f"{line} asks for it", not any("the air begins" in one for one in lines_of("air", asked + line)))
+    check("air above the pressure of water is meant", not any("the air begins" in one for one in lines_of(
+        "air", WET.replace("p_w = -20 p_w_slope = -10 p_c = 20 p_c_slope = 10", "p_w = 30 p_c = 5"))))
+
+
+def test_water_outside_without_its_load():
+    lake = WET.replace("u-p_w-p_c", "u-p_w").replace("p_w = -20 p_w_slope = -10 p_c = 20 p_c_slope = 10",
+                                                     "p_w = 30 p_w_slope = -10").replace(" retention = 'c'", "")
+    lake = lake.replace("&retention name = 'c' law = 'van_genuchten' alpha = 0.1 n = 2 /\n", "")
+    water = "&fix group = 'top' field = 'p_w' value = 30 /\n"
+    found = [line for line in lines_of("lake", lake + water) if "its weight is missing" in line]
+    check("3 m of water without weight", len(found) == 1
+          and "up to 30 kPa stands on 1 of the 1 edges of 'top'" in found[0], found)
+    for what, more in (("its pressure", "&load group = 'top' kind = 'pressure' value = 30 /\n"),
+                       ("a held surface", "&fix group = 'top' field = 'u_z' /\n"),
+                       ("a held history", "")):
+        text = lake + (water if more else water.replace("value = 30", "hold = 'yes'")) + more
+        check(f"{what} is no doubt", not any("weight is missing" in line for line in lines_of("lake", text)))
+    grows = lake + "&history name = 'h' times = 0, 5 values = 0, -1 /\n" + water.replace(
+        "value = 30", "value = -20 history = 'h'")
+    check("a level that rises", any("up to 20 kPa" in line for line in lines_of("lake", grows)))
+
+
+SHAKEN = """&scene name = 'base' geometry = 'plane_strain' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 4 z_cells = 2 /
+&elastic name = 'e' young = 5e4 poisson = 0.25 /
+&region material = 'e' void_ratio = 0 rho_s = 2 /
+&history name = 'h' times = {} values = {} /
+{}&stage name = 'shake' analysis = 'dynamic' duration = 0.2 dt = 0.01 /
+&fix group = 'all' field = 'u_z' /
+&fix group = 'bottom' field = 'u_r' value = 0.02 history = 'h' {} /
+"""
+STRUCK = "begins in stage shake with a velocity of "
+
+
+def test_a_motion_that_begins_with_a_velocity():
+    for times, values, rest, more, words in (
+            ("0, 0.1, 0.2", "0, 1, 0", "", "", STRUCK + "0.2 m/s, and the ground with 0"),
+            ("0, 0.01, 0.1, 0.2", "0, 0.001, 1, 0", "", "", None),
+            ("0, 0.1, 0.2", "0, 1, 0", "", "motion = 'acceleration'", None),
+            ("0, 1, 1.1", "0, 0, 1", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n", "",
+             STRUCK + "0.2 m/s"),
+            ("0, 2", "0, 1", "&stage name = 'before' analysis = 'dynamic' duration = 0.1 dt = 0.01 /\n", "",
+             "begins in stage before with a velocity of 0.01 m/s")):
+        said = lines_of("shaken", SHAKEN.format(times, values, rest, more))
+        found = [line for line in said if "it is struck" in line]
+        check(f"{times} {values} {rest} {more}", (len(found), words is None or words in found[0])
+              == (int(words is not None), True), found)
+
+
+def test_pulses_that_are_over_and_plates():
+    text = """&scene name = 'lwd' gravity = 10 /
+&mesh r = 0, 0.2, 1 r_cells = 1, 1 z = -1, 0 z_cells = 2 /
+&elastic name = 'e' young = 3e4 poisson = 0.3 /
+&region material = 'e' void_ratio = 0 rho_s = 2 /
+&initial stress = 'geostatic' surface = 0 k_0 = 0.4 /
+&history name = 'pulse' times = {times} values = 0, 1, 0 /
+&plate name = 'p' r = 0, 0.2 mass = 0.02 weight = 'yes' force = -7 history = 'pulse' /
+&contact name = 'c' slave = 'top' master = 'p' /
+&stage name = 'rest' analysis = 'static' duration = 2 dt = 0.5 /
+&stage name = 'impact' analysis = 'dynamic' duration = 0.04 dt = 5e-3 /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+"""
+    said = lambda name, text, word: [line for line in lines_of(name, text) if word in line]  # noqa: E731
+    meant = text.format(times="2, 2.009, 2.018")
+    check("a pulse at its time is no doubt", lines_of("lwd", meant) == [], lines_of("lwd", meant))
+    early = said("lwd", text.format(times="0, 0.009, 0.018"), "is over at")
+    check("a pulse of the plate in the stage before", len(early) == 1 and
+          "is over at 0.018 s, before stage impact begins at 2 s" in early[0], early)
+    load = meant.replace("&stage name = 'rest'", "&history name = 'q' times = 0, 0.01, 0.02 values = 0, 2, 0 /\n"
+                         "&load group = 'top_2' kind = 'pressure' value = 1 history = 'q' {}/\n&stage name = 'rest'")
+    check("a pulse of a load in the stage before", len(said("lwd", load.format(""), "is over at")) == 1)
+    check("one that is limited to the stage", len(said("lwd", load.format("stages = 'impact' "), "begins at 0 s")) == 1)
+    check("a slow load of the stage before is no doubt",
+          not said("lwd", load.format("").replace("0, 0.01, 0.02", "0, 1, 1.9"), "is over at"))
+    # 7e3 on a circle of 0.2 m are 55,704 kPa.
+    newton = said("lwd", meant.replace("force = -7", "force = -7e3").replace("dt = 5e-3", "dt = 5e-3 cuts = 30"),
+                  "forces are in kN")
+    check("a force in N", len(newton) == 1 and "is 55704.2 kPa on its 0.125664 m2" in newton[0], newton)
+    up = meant.replace("force = -7", "force = 7").replace("'yes'", "'no'")
+    check("a plate that is pulled up", len(said("lwd", up, "nothing presses the plate 'p' down")) == 1)
+    held = up + "&fix group = 'p' field = 'u_z' value = -1e-4 /\n"
+    check("one that a &fix moves is no doubt", not said("lwd", held, "nothing presses"))

@@ -67,8 +67,9 @@ def test_peaks_and_their_times_are_told_in_the_unit_of_a_reader():
     check("memory and times are for --verbose", "MB" not in done.stdout and "factorisation" not in done.stdout)
     check("and are there", all(word in run(work / "small.nml", work / "small", "--verbose").stdout
                                for word in ("MB", "factorisation")))
-    one = run(written("one", SMALL.replace("dt = 0.01", "dt = 1 steps = 'given'")), work / "one").stdout
-    check("1 step", "Stage s: 1 step, time 1 s" in one and "\n1 step." in one, one)
+    one = SMALL.replace("dt = 0.01", "dt = 0.2 steps = 'given'").replace("duration = 1 ", "duration = 0.2 ")
+    one = run(written("one", one), work / "one").stdout
+    check("1 step", "Stage s: 1 step, time 0.2 s" in one and "\n1 step." in one, one)
 
 
 def test_warnings_are_said_again_at_the_end():

@@ -17,6 +17,7 @@ import mud  # noqa: E402
 from mud.calibration import (  # noqa: E402
     Effort, answers_of, calibrate, evaluate, make_task, misfits_of, write_material, write_report,
 )
+from mud.calibration import simulation  # noqa: E402
 from mud.calibration.simulation import SETTINGS  # noqa: E402
 from mud.calibration.simulation import loops as paths_of_cycles  # noqa: E402
 
@@ -121,6 +122,13 @@ def test_small_strain_moduli_are_those_of_eq_3():
           {"c_chi", "zeta_chi", "s_chi"} <= asked and not {"c_chi", "zeta_chi", "s_chi"} & plain, (plain, asked))
     _, answer = missed(written("liquefaction_stands.csv", head + "L,0.01,2,100,0.7\n"))
     check("a sample that stands counts as standing so long", abs(10 ** answer.columns["log_N"][0] - 9) < 1e-9, answer)
+    # A sample that no longer bears the stress has failed in the cycle in which the driver says that it is not reached.
+    before, simulation.LIQUEFIED = simulation.LIQUEFIED, 0.9999
+    for csr, number in ((0.1, 5), (0.15, 2), (0.2, 2), (0.25, 1)):
+        _, answer = missed(written("liquefaction_fails.csv", head + f"L,{csr},9,100,0.93\n"))
+        off = abs(10 ** answer.columns["log_N"][0] - number)
+        check(f"a sample that fails under {csr} does so in cycle {number}", off < 1e-9, answer)
+    simulation.LIQUEFIED = before
     told, _ = missed(loops, mud.Material("hostun_hysteresis"))
     check("loops of retention are followed with hysteresis", abs(told.S_w - 0.0159) < 3e-4, told)
     told, _ = missed(loops, mud.Material("hostun_hysteresis"), hysteresis=0)

@@ -409,6 +409,12 @@ def test_blanks_between_cells_and_names_in_a_comment():
         "a comment with names above a line of names",
         written("# eps_a q e, as measured\n" + table(head, *columns, mark=" ")),
     )
+    preamble = "".join(f"Setting {i} of the cell, as chosen: yes\n" for i in range(40))
+    for mark in (" ", ",", "\t"):
+        path = written(preamble + table(head.replace(" ", mark), *columns, mark=mark))
+        drained(f"a long preamble before cells with {mark!r}", path, ("lines 1 to 40 is above the line of names",))
+        path = written(preamble + table("# " + head.replace(" ", mark), *columns, mark=mark))
+        drained("the same before names in a comment", path, ("the comment in line 41 is the line of names",))
     check(
         "numbers without any names are refused",
         "needs the column eps_a" in refusal(written(table("# nothing", *columns)), "drained"),
@@ -445,6 +451,25 @@ def test_german_heads():
     )
     curve = read_table(written("pF-Wert;Sättigung\n1;1\n2;0,6\n3;0,2\n"), "retention")[0]
     check("pF", np.allclose(curve["suction"], [0.980665, 9.80665, 98.0665]), curve["suction"])
+
+
+def test_a_name_its_symbol_and_what_it_says_of_the_stress():
+    for head, wanted in (
+        ("Porenwasserdruck u_w [kPa]", ("u", "", "kPa")),
+        ("Porenwasserüberdruck Δu / kPa", ("u", "excess", "kPa")),
+        ("Zelldruck σ3 [bar]", ("sigma_r", "cell", "bar")),
+        ("Effektiver Zelldruck [kPa]", ("sigma_r", "effective", "kPa")),
+        ("mittlere effektive Spannung p' in kN/m²", ("p", "effective", "kPa")),
+        ("Total vertical stress, σv (psi)", ("sigma_a", "total", "psi")),
+        ("axiale Dehnung ε_1 in %", ("eps_a", "", "percent")),
+        ("Sättigungsgrad S_w", ("S_w", "", "")),
+        ("(σ1-σ3) [MPa]", ("q", "", "MPa")),
+        ("Anfangsporenzahl e_0 [-]", ("e_0", "", "")),
+        ("sigma'_3_kPa", ("sigma_r", "effective", "kPa")),
+        ("eps_v_percent_derived", ("eps_v", "", "percent")),
+    ):
+        found = head_of(head, "drained")
+        check(f"{head} is understood", (found.quantity, found.state, found.unit) == wanted, found)
 
 
 def test_units():

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """mud_study: errors that it tells are those of closed forms, finished runs are found again, every end has its sentence
 and its exit code."""
+
 import os
 import re
+import shutil
+import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 
@@ -12,13 +16,22 @@ from checking import build, check, needs_plain_library, needs_release, root, wor
 
 needs_plain_library()
 needs_release("studies are Python over many runs of mud_host, the same in every build")
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(root / "python"), "MUD_LIBRARY_DIR": str(build), "OMP_NUM_THREADS": "1",
-               "MUD_HOST": str(build / "host/mud_host"), "MPLBACKEND": "Agg"}
+ENVIRONMENT = {
+    **os.environ,
+    "PYTHONPATH": str(root / "python"),
+    "MUD_LIBRARY_DIR": str(build),
+    "OMP_NUM_THREADS": "1",
+    "MUD_HOST": str(build / "host/mud_host"),
+    "MPLBACKEND": "Agg",
+}
 sys.path.insert(0, str(root / "python"))
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 import tables  # noqa: E402 (checking knows its folder)
 from mud.host import HostRun  # noqa: E402
 from mud.study import histories  # noqa: E402
+
+sys.path.insert(0, str(root / "verification/studies/effects"))
+import scenes  # noqa: E402
 
 PARTS = ("change", "steps", "mesh", "newton", "stress")
 
@@ -30,7 +43,7 @@ BAR = f"""&scene name = 'bar' geometry = 'plane_strain' fields = 'u' /
 &mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 8 /
 &elastic name = 'soil' young = {MODULUS} poisson = 0 /
 &region material = 'soil' void_ratio = 0 rho_s = 2 /
-&history name = 'p' times = {', '.join(f'{t:.6f}' for t in TIMES)} values = {', '.join(f'{x:.8f}' for x in SHAPE)} /
+&history name = 'p' times = {", ".join(f"{t:.6f}" for t in TIMES)} values = {", ".join(f"{x:.8f}" for x in SHAPE)} /
 &stage name = 'wave' analysis = 'dynamic' duration = 0.03 /
 &fix group = 'left' field = 'u_r' /
 &fix group = 'right' field = 'u_r' /
@@ -57,8 +70,13 @@ def study(command, text, name, *more, code=0):
     scene = work / f"{name}.nml"
     scene.write_text(text)
     folder = work / f"study_{name}"
-    done = subprocess.run([sys.executable, "-m", "mud.study", command, scene, "--output", folder, *more],
-                          capture_output=True, text=True, env=ENVIRONMENT, cwd=work)
+    done = subprocess.run(
+        [sys.executable, "-m", "mud.study", command, scene, "--output", folder, *more],
+        capture_output=True,
+        text=True,
+        env=ENVIRONMENT,
+        cwd=work,
+    )
     check(f"{name}: exit code {code}", done.returncode == code, (done.returncode, done.stderr[-400:]))
     return done, errors_of(folder), folder
 
@@ -75,14 +93,18 @@ def errors_of(folder):
 def run_of(folder, done):
     """The folder of the run that the last line names."""
     fineness, tolerance = re.search(r"fineness (\S+), step tolerance (\S+),", done.stdout.splitlines()[-1]).groups()
-    found = [one for one in folder.glob(f"F{fineness}_a*")
-             if np.isclose(float(one.name.split("_a")[1].split("_")[0]), float(tolerance), rtol=0.06)]
+    found = [
+        one
+        for one in folder.glob(f"F{fineness}_a*")
+        if np.isclose(float(one.name.split("_a")[1].split("_")[0]), float(tolerance), rtol=0.06)
+    ]
     return min(found, key=lambda one: len(one.name))
 
 
 def pulse_in_bar(z, t):
     """Displacement of the bar by d'Alembert: the velocity p/(rho c) runs down, comes back from the base with the other
     sign, and once more from the free top. z [m], t [s] of any shape."""
+
     def travelled(tau):
         fine = np.linspace(0, PULSE, 4001)
         path = np.r_[0, np.cumsum(0.5 * (f(fine[1:]) + f(fine[:-1])) * np.diff(fine))]
@@ -91,9 +113,9 @@ def pulse_in_bar(z, t):
     def f(tau):
         return np.interp(tau, TIMES, SHAPE)
 
-    scale = -LOAD / (2 * SPEED)   # p/(rho c) [m/s], rho = 2 Mg/m3
+    scale = -LOAD / (2 * SPEED)  # p/(rho c) [m/s], rho = 2 Mg/m3
     u = np.zeros_like(t)
-    for k in range(4):   # every path down, and its image from the base
+    for k in range(4):  # every path down, and its image from the base
         u += (-1) ** k * (travelled(t - (2 * k + 1 - z) / SPEED) - travelled(t - (2 * k + 1 + z) / SPEED))
     return scale * u
 
@@ -108,11 +130,18 @@ def test_the_error_told_of_a_pulse_is_that_of_dalembert():
         told = errors[f"{name}.u_z"]["total"]
         check(f"{name}: told {told:.4f} for {true:.4f}", told / 5 < true < 3 * told and true < 6e-2, (told, true))
     parts = errors["top.u_z"]
-    check("the total is the sum of its parts", np.isclose(
-        parts["total"], sum(parts[x] for x in ("steps", "mesh", "newton", "stress")), rtol=2e-3), parts)
+    check(
+        "the total is the sum of its parts",
+        np.isclose(parts["total"], sum(parts[x] for x in ("steps", "mesh", "newton", "stress")), rtol=2e-3),
+        parts,
+    )
     last = done.stdout.splitlines()[-1]
-    check("the last line is the sum and its cost", last.startswith("total ") and all(
-        word in last for word in ("= mesh", "+ steps", "+ Newton", "+ stress integration", "times that run")), last)
+    check(
+        "the last line is the sum and its cost",
+        last.startswith("total ")
+        and all(word in last for word in ("= mesh", "+ steps", "+ Newton", "+ stress integration", "times that run")),
+        last,
+    )
     check("a picture", (folder / "accuracy.png").stat().st_size > 10000)
 
 
@@ -132,9 +161,14 @@ def test_finished_runs_are_found_again_and_others_repeated():
 def test_every_end_has_its_sentence_and_its_exit_code():
     done, _, _ = study("accuracy", BAR, "dear", "--accuracy", "1e-4", "--budget", "1.5", code=23)
     check("budget", "budget used up" in done.stderr, done.stderr)
-    done, errors, _ = study("accuracy", BLOCK.format("max_iterations = 1 cuts = 0 tolerance = 1e-14").replace(
-        "&elastic name = 'soil' young = 1e4 poisson = 0.3 /", "&mud name = 'soil' /").replace("'static'", "'quasi_static'"),
-        "fails", code=3)
+    done, errors, _ = study(
+        "accuracy",
+        BLOCK.format("max_iterations = 1 cuts = 0 tolerance = 1e-14")
+        .replace("&elastic name = 'soil' young = 1e4 poisson = 0.3 /", "&mud name = 'soil' /")
+        .replace("'static'", "'quasi_static'"),
+        "fails",
+        code=3,
+    )
     check("a run that fails", "exit code 14" in done.stderr and not errors, done.stderr)
     done, _, _ = study("accuracy", BLOCK.format("").replace("value = 10", "value = 0"), "still", code=3)
     check("nothing moves", "no named point" in done.stderr, done.stderr)
@@ -144,11 +178,66 @@ def test_every_end_has_its_sentence_and_its_exit_code():
     check("half a scene", "the group &mesh is missing" in done.stderr, done.stderr)
 
 
+# A host whose answers are 1 + an error of its mesh and of its steps, by a formula in F and a.
+FAKE = """#!{python}
+import math, pathlib, sys
+words = sys.argv
+F, a = (float(words[words.index(x) + 1]) for x in ("--fineness", "--step-tolerance"))
+folder = pathlib.Path(words[words.index("--output") + 1])
+u = {formula}
+n = max(2, int(2 * F) + 1)
+(folder / "histories.csv").write_text("time,p.u_z\\n" + "".join(f"{{t / 20}},{{u * t / 20}}\\n" for t in range(21)))
+(folder / "nodes_load.csv").write_text("r,z\\n" + "".join(f"{{i / (n - 1)}},{{i / (n - 1)}}\\n" for i in range(n)))
+{more}
+"""
+
+
+def fake(name, formula, *more, code, extra=""):
+    host = work / f"host_{name}"
+    host.write_text(FAKE.format(python=sys.executable, formula=formula, more=extra))
+    host.chmod(0o755)
+    text = BLOCK.format("").replace("r_cells = 2", "r_cells = 8").replace("z_cells = 2", "z_cells = 8")
+    return study("accuracy", text, name, "--host", str(host), *more, code=code)
+
+
+def test_errors_of_a_known_law_are_told():
+    for name, formula, true in (
+        ("smooth", "1 + 0.2 * F**-2 + 0.5 * a", lambda F, a: 0.2 * F**-2 + 0.5 * a),
+        ("first", "1 - 0.1 / F - 0.5 * a", lambda F, a: 0.1 / F + 0.5 * a),
+        ("slow", "1 + 0.1 / F + 0.05 * a**0.5", lambda F, a: 0.1 / F + 0.05 * a**0.5),
+        ("exact", "1.0", lambda F, a: 0.0),
+    ):
+        done, errors, _ = fake(name, formula, code=0)
+        F, a = map(float, re.search(r"fineness (\S+), step tolerance (\S+),", done.stdout.splitlines()[-1]).groups())
+        told = errors["p.u_z"]["total"]
+        check(f"{name}: told {told:.4f} for {true(F, a):.4f}", told / 5 <= true(F, a) <= 2 * told, (F, a))
+
+
+def test_what_has_no_limit_does_not_converge():
+    done, errors, _ = fake("grows", "1 + 0.1 * math.log2(F)", code=22)
+    check(
+        "the mesh", "does not converge" in done.stdout.splitlines()[-1] and errors["p.u_z"]["mesh"] > 0.01, done.stdout
+    )
+    done, errors, _ = fake("noise", "1 + 0.05 * math.sin(1e3 * math.log(a) + 7 * F) + 0.02 / F", code=22)
+    check("the steps", "does not converge" in done.stderr and errors["p.u_z"]["steps"] > 0.01, done.stdout)
+
+
+def test_a_run_that_says_that_shear_localises_ends_the_study():
+    extra = 'sys.stderr.write("mud_host: warning: shear is localised at (0.1, -0.2) m\\n") if F >= 2 else None'
+    done, errors, folder = fake("bands", "1 + 0.2 / F", code=21, extra=extra)
+    check(
+        "its words are told",
+        "shear is localised at (0.1, -0.2) m" in done.stderr and "viscosity" in done.stderr,
+        done.stderr,
+    )
+    check("and no finer mesh is run", errors and not list(folder.glob("F4_*")), sorted(folder.glob("F*")))
+
+
 def test_a_pulse_between_two_steps_is_a_difference():
     # The rougher history steps over it and agrees at all its times.
     good, rough = object.__new__(histories.Histories), object.__new__(histories.Histories)
     t = np.linspace(0, 1, 101)
-    good.values, good.forces = {"p.u_z": (t, np.exp(-((t - 0.45) / 0.01) ** 2))}, {}
+    good.values, good.forces = {"p.u_z": (t, np.exp(-(((t - 0.45) / 0.01) ** 2)))}, {}
     rough.values, rough.forces = {"p.u_z": (t[::10], np.zeros(11))}, {}
     check("a pulse that is missed", histories.distance(rough, good, "p.u_z") > 0.5)
 
@@ -159,4 +248,149 @@ def test_cubics_between_steps_err_less_than_straight_lines():
     cubics = np.max(np.abs(histories.between(t, np.sin(t), at) - np.sin(at)))
     lines = np.max(np.abs(np.interp(at, t, np.sin(t)) - np.sin(at)))
     check("a tenth of the error", cubics < lines / 10, (cubics, lines))
-    check("no overshoot", np.max(histories.between(np.arange(4.0), np.array([0.0, 0, 1, 1]), np.linspace(0, 3, 99))) <= 1)
+    check(
+        "no overshoot", np.max(histories.between(np.arange(4.0), np.array([0.0, 0, 1, 1]), np.linspace(0, 3, 99))) <= 1
+    )
+
+
+# Consolidation of a column of 1 m that drains at its top: c_v = k/eta_w E_oed = 1e-12/1e-6*12000 = 0.012 m2/s.
+COLUMN = """&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w' pressures = 'linear' /
+&mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 8 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&fluids k_w = 1e12 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
+&region material = 'soil' void_ratio = 0.6 permeability = 'k' /
+&stage name = 'load' analysis = 'quasi_static' duration = 40 {} /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&load group = 'top' kind = 'pressure' value = 100 /
+&point name = 'base' r = 0 z = 0 /
+&point name = 'top' r = 0 z = 1 /
+"""
+
+
+def terzaghi(z, t):
+    """Excess pressure at a height above the closed base [kPa]."""
+    m = np.pi / 2 * (2 * np.arange(200)[:, None] + 1)
+    return 100 * np.sum(2 / m * np.sin(m * (1 - z)) * np.exp(-(m**2) * 0.012 * t), axis=0)
+
+
+def test_the_error_told_of_a_consolidation_is_that_of_terzaghi():
+    for name, steps in (("controlled", ""), ("given", "dt = 0.4 steps = 'given'")):
+        done, errors, folder = study(
+            "accuracy", COLUMN.format(steps), name, "--goals", "base.p_w", "--accuracy", "1e-2"
+        )
+        table = HostRun(run_of(folder, done)).histories
+        late = table["time"] > 1  # the jump at the start is within one step
+        true = np.max(np.abs(table["base.p_w"] - terzaghi(0.0, table["time"]))[late]) / 100
+        told = errors["base.p_w"]["total"]
+        check(f"{name} steps: told {told:.5f} for {true:.5f}", true < 3 * told and true < 2e-2, (told, true))
+
+
+def test_a_price_tells_what_ten_three_and_one_per_cent_cost():
+    done, _, folder = study("price", BAR, "bar", "--budget", "300")
+    rows = tables.rows(folder / "price.csv")
+    check("a row each", [float(row["accuracy"]) for row in rows] == [0.1, 0.03, 0.01], rows)
+    check(
+        "measured, and what holds less costs more",
+        all(row["state"] == "met" and float(row["total"]) <= float(row["accuracy"]) for row in rows)
+        and float(rows[0]["seconds"]) <= float(rows[2]["seconds"]),
+        rows,
+    )
+    check("a recipe each", done.stdout.count("mud_host") == 3 and "--step-tolerance" in done.stdout, done.stdout)
+    check("a picture", (folder / "price.png").stat().st_size > 10000)
+    done, errors, _ = study("accuracy", BAR, "bar", "--accuracy", "1e-2")
+    check("the runs serve other studies", done.stdout.count("found:") >= 3, done.stdout)
+    # Where the budget ends before 1 %, it is expected from what was measured.
+    dear = work / "study_bar_dear"
+    shutil.copytree(folder, dear, ignore=lambda _, names: [n for n in names if n.startswith("F2_")])
+    done, _, _ = study("price", BAR, "bar_dear", "--budget", "1e-3", code=23)
+    check("expected", "1 %" in done.stdout and "expected" in done.stdout, done.stdout + done.stderr)
+
+
+def test_interrupted_studies_go_on():
+    scene = work / "interrupted.nml"
+    scene.write_text(BAR)
+    words = [
+        sys.executable,
+        "-m",
+        "mud.study",
+        "accuracy",
+        scene,
+        "--accuracy",
+        "1e-4",
+        "--output",
+        work / "interrupted",
+    ]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    while len(list((work / "interrupted").glob("*/run.json"))) < 4 and process.poll() is None:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate()
+    check("interrupted", process.returncode == 130 and "the same command goes on" in told, (process.returncode, told))
+    done = subprocess.run([*words, "--budget", "0.1"], capture_output=True, text=True, env=ENVIRONMENT)
+    check("and goes on", done.stdout.count("found:") >= 4, done.stdout)
+
+
+def test_effects_are_kept_and_dropped_as_they_matter():
+    for scene in scenes.TRAPS + scenes.EASY:
+        name = scene.name.replace(" ", "_").replace(",", "")
+        text = scene.text.replace("{materials}", str(root / "drivers/materials"))
+        _, _, folder = study("effects", text, name, "--share", "inf")
+        table = {row["effect"]: row for row in tables.rows(folder / "effects.csv")}
+        for effect, wanted in [(x, "on") for x in scene.keeps] + [(x, "off") for x in scene.drops]:
+            check(f"{name}: {effect} is {wanted}", table.get(effect, {}).get("on") == wanted, table.get(effect))
+
+
+def strip(cells):
+    """Ground under a strip that leaves open inertia, fields and weight; every axis has so many cells."""
+    return f"""&scene name = 'strip' geometry = 'plane_strain' effects = 'auto' gravity = 0 accuracy = 1e-2 /
+&mesh r = 0, 4 r_cells = {cells} z = -4, 0 z_cells = {cells} /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&retention name = 'c' P_a = 5 omega = 0 n = 2 m = 1 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
+&region material = 'soil' void_ratio = 0.6 permeability = 'k' retention = 'c' /
+&history name = 'h' times = 0, 100 values = 0, 1 /
+&stage name = 'load' duration = 2000 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&fix group = 'top' field = 'p_a' /
+&load group = 'top' kind = 'pressure' value = 10 history = 'h' /
+&point name = 'centre' r = 0 z = 0 /
+&point name = 'deep' r = 0 z = -1 /
+"""
+
+
+def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
+    done, _, folder = study("effects", strip(4), "coarse", "--run")
+    check(
+        "no pilot where cells cannot be spared",
+        "0 pilots" in done.stdout and "no effect is tried" in done.stdout,
+        done.stdout,
+    )
+    check(
+        "what is open starts as the keys ask, and runs",
+        (folder / "run/histories.csv").exists() and "fields = 'u-p_w-p_c'" in (folder / "reduced.nml").read_text(),
+    )
+    done, _, _ = study("effects", strip(40), "short")
+    check("one where the run is short", "1 pilots" in done.stdout and "less than 30 s" in done.stdout, done.stdout)
+    done, _, folder = study("effects", strip(80), "long")
+    spent, quote = map(float, re.search(r"pilots, (\S+) s .* quoted at (\S+) s", done.stdout).groups())
+    check("a twentieth of a long one", quote > 30 and spent <= quote / 20, (spent, quote))
+    table = {row["effect"]: row["on"] for row in tables.rows(folder / "effects.csv")}
+    check(
+        "water stays, suction and inertia go",
+        (table["p_w"], table["p_c"], table["inertia in load"]) == ("on", "off", "off"),
+        table,
+    )
+    check("the scene says so", "fields = 'u-p_w'" in (folder / "reduced.nml").read_text())
+
+
+def test_one_command_gives_the_answer():
+    slow = next(s for s in scenes.EASY if s.name == "slow ramp, wet")
+    done, errors, _ = study("run", slow.text, "answer", "--accuracy", "3e-2")
+    check("one command gives the answer", errors and "met" in done.stdout.splitlines()[-1], done.stdout)

@@ -52,13 +52,13 @@ WORDS = {
     "control": "",
     "cycle_by": "cycleby",
     "eps_a": (
-        "eps1 epsilona epsilon1 εa ε1 axialstrain verticalstrain axialdehnung axialedehnung vertikaldehnung "
-        "vertikaledehnung dehnung stauchung axialstauchung axialestauchung axialverformung vertikalverformung "
-        "strain"
+        "eps1 epsaxial axialeverformung epsilona epsilon1 εa ε1 axialstrain verticalstrain axialdehnung "
+        "axialedehnung vertikaldehnung vertikaledehnung dehnung stauchung axialstauchung axialestauchung "
+        "axialverformung vertikalverformung strain"
     ),
     "eps_v": (
-        "epsvol epsilonv epsilonvol εv εvol volumetricstrain volumestrain volstrain volumechange "
-        "volumendehnung volumenaenderung volumetrischedehnung volumenstauchung volumenverformung"
+        "epsvol volumetrischeverformung epsilonv epsilonvol εv εvol volumetricstrain volumestrain volstrain "
+        "volumechange volumendehnung volumenaenderung volumetrischedehnung volumenstauchung volumenverformung"
     ),
     "gamma": "γ shearstrain engineeringshearstrain scherdehnung gleitung schubverzerrung scherverzerrung schiebung",
     "q": (
@@ -80,7 +80,7 @@ WORDS = {
         "radialespannung horizontalspannung seitenspannung seitendruck"
     ),
     "sigma_r cell": "cellpressure chamberpressure zelldruck",
-    "u": "porepressure porewaterpressure pwp porenwasserdruck porendruck",
+    "u": "uw porepressure porewaterpressure pwp porenwasserdruck porendruck",
     "u back": "backpressure gegendruck saettigungsdruck",
     "u excess": "du δu excessporepressure excessporewaterpressure excesspwp porenwasserueberdruck porenueberdruck",
     "p_0": "p0 initialmeanstress consolidationstress consolidationpressure konsolidationsspannung",
@@ -91,7 +91,8 @@ WORDS = {
         "anfaenglicheporenzahl porenzahlzubeginn"
     ),
     "suction": (
-        "pc matricsuction suctionpressure capillarypressure saugspannung saugdruck matrixsaugspannung " "kapillardruck"
+        "pc soilsuction soilwatersuction suctionhead matrichead ψ matricsuction suctionpressure "
+        "capillarypressure saugspannung saugdruck matrixsaugspannung kapillardruck"
     ),
     "S_w": "sw degreeofsaturation saturation saturationdegree saettigung saettigungsgrad wassersaettigung",
     "stress_ratio": (

@@ -79,15 +79,17 @@ def _text(path: pathlib.Path, kind: str, understood: list[tuple[str, str]]) -> l
     lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip()]
     comments = [(n, line.lstrip("# ")) for n, line in lines if line.startswith("#")]
     lines = [(n, line) for n, line in lines if not line.startswith("#")]
-    mark = _separator([line for _, line in lines])
+    numbers = [line for _, line in lines if sum(map(str.isdigit, line)) > sum(map(str.isalpha, line))]
+    numbers = numbers or [line for _, line in lines]  # a long preamble says nothing of the rows
+    mark = _separator(numbers)
     if mark in SEPARATORS:
         understood.append((f"{SEPARATORS[mark]} between cells", "the separator"))
     rows = [(n, _split(line, mark)) for n, line in lines]
-    width = Counter(len(cells) for _, cells in rows).most_common(1)[0][0] if rows else 0
+    width = Counter(len(_split(line, mark)) for line in numbers).most_common(1)[0][0] if numbers else 0
     if mark == " ":
         rows = [(n, _split_names(line, cells, width)) for (n, line), (_, cells) in zip(lines, rows)]
     if _line_of_names([cells for _, cells in rows], kind) is None:
-        rows = _names_in_comment(comments, kind, mark, width, understood) + rows
+        rows = sorted([*rows, *_names_in_comment(comments, kind, mark, width, understood)])
     rows = _decimal_points(rows, mark, understood)
     return [(n, cells) for n, cells in rows if not _blank(cells)]
 

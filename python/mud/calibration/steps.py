@@ -38,7 +38,7 @@ def path_of(values: np.ndarray, noise: np.ndarray, equal_stay: bool = False) -> 
     tiny = ROUNDING * float(np.ptp(values))
     begun = np.flatnonzero(np.abs(values - values[0]) > noise[0])
     way = np.sign(values[begun[0]] - values[0]) if len(begun) else 1.0
-    kept, turns, back, i = [0], [], 0.0, 1
+    kept, turns, i = [0], [], 1
     while i < len(values):
         ahead = way * (values[i] - values[kept[-1]])
         if ahead > tiny or equal_stay and ahead == 0:
@@ -47,12 +47,10 @@ def path_of(values: np.ndarray, noise: np.ndarray, equal_stay: bool = False) -> 
             turns.append(kept[-1])  # from there on again, the other way
             way, i = -way, kept[-1]
         i += 1
-    left = np.ones(len(values), dtype=bool)
-    left[kept] = False
-    for row in np.flatnonzero(left):
-        before = kept[int(np.searchsorted(kept, row)) - 1]
-        back = max(back, float(abs(values[row] - values[before])))
-    return np.array(kept), np.array(turns, dtype=int), back
+    rows = np.array(kept)
+    left = np.setdiff1d(np.arange(len(values)), rows)
+    behind = np.abs(values[left] - values[rows[np.searchsorted(rows, left) - 1]])
+    return rows, np.array(turns, dtype=int), float(behind.max(initial=0.0))
 
 
 def without_noise(values: np.ndarray, by_stress: bool, equal_stay: bool) -> tuple[np.ndarray, np.ndarray, float]:

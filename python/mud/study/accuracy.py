@@ -3,7 +3,7 @@
 
 A pair (F, a) is a run with F times the cells along each axis and steps of tolerance a. Its errors are
 
-- mesh: distance of (F, a) and (F/2, a); where a third mesh shows the order, what that leaves of it;
+- mesh: half the distance of (F, a) and (F/2, a); where a third mesh shows the order, what that leaves of it;
 - steps: distance of (F/2, a) and (F/2, sqrt(10) a), on the coarser mesh, for a sixth of the time;
 - Newton, stress integration: distance of the cheapest run and the same with a tenth of these tolerances.
 
@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..errors import InputError
 from .histories import distance
 from .runs import LOOSEST, BudgetUsedUp, Failed, Key, Run, Scene
 
@@ -24,9 +25,13 @@ HALF_DECADE = 10**0.5
 NOISE = 4 / 3  # distances that fall by less from mesh to mesh show no limit
 # Share of the last distance that is told, however fast distances fall, and most times it: one ratio shows r poorly.
 LEAST, MOST = 1 / 3, 2.0
+LEAST_STEPS, MOST_STEPS = 1 / 2, 1.5  # the same of the steps, whose order in the tolerance is 1 at most
+UNKNOWN_ORDER = 0.5  # of the distance of two meshes is told: orders from 1 to 3.3 leave all of it to a ninth
 USUAL_MESH, USUAL_STEPS = 1.5, 0.8  # orders in the cells and the tolerance, to choose the next pair
 SMALL = 1 / 30  # of what is asked: steps that err less on one mesh are not measured again on the next
 SOLVE_SHARE = 1 / 3  # of what is asked: from here on Newton's method and the stress integration are tightened
+
+REFUSED = (2, 10, 11, 12, 13)  # exit codes of mud_host: what the scene says cannot be run
 
 MET, LOCALISED, NOT_CONVERGING, BUDGET, FAILS = "met", "localised", "does not converge", "budget used up", "runs fail"
 EXIT_CODES = {MET: 0, FAILS: 3, LOCALISED: 21, NOT_CONVERGING: 22, BUDGET: 23}
@@ -77,8 +82,8 @@ class Result:
 
     @property
     def last(self) -> Pair:
-        """The pair of the smallest total, the last one where the study is met."""
-        return self.pairs[-1] if self.state == MET else min(self.pairs, key=lambda p: p.total)
+        """The finest pair: what a rougher one told is contradicted where this one tells more."""
+        return self.pairs[-1]
 
 
 class Study:
@@ -90,7 +95,8 @@ class Study:
         self.goals = goals or ([given] if isinstance(given, str) else list(given))
         self.pairs: list[Pair] = []
         self.tight = 0  # tenths of the tolerances of Newton and the stress integration, of all runs
-        self.solve: dict[str, tuple[float, float]] = {}
+        self.solve: dict[str, tuple[float, float]] = {}  # errors by Newton and the stress integration, by answer
+        self.expected_solve: dict[str, tuple[float, float]] = {}  # the same where they cannot be measured
 
     # Runs ---------------------------------------------------------------------------------------------------------
 
@@ -104,8 +110,10 @@ class Study:
         return run
 
     def known(self, fineness, tolerance) -> Run | None:
-        key = _key(fineness, tolerance, self.tight, self.tight * bool(self.scene.list_of("mud")))
-        return self.scene.runs.get(key)
+        """A run that was made, the tightest, to see how fast distances fall."""
+        has_mud = bool(self.scene.list_of("mud"))
+        keys = (_key(fineness, tolerance, n, n * has_mud) for n in range(self.tight, -1, -1))
+        return next((self.scene.runs[key] for key in keys if key in self.scene.runs), None)
 
     # Errors -------------------------------------------------------------------------------------------------------
 
@@ -133,7 +141,9 @@ class Study:
             change = fine.histories.change(name)
             errors[name] = Error(change, steps, mesh, newton, stress, order, falls)
         if not errors:
-            raise Failed("no named point, plate or goal changes in the runs; give the scene a &point where something moves")
+            raise Failed(
+                "no named point, plate or goal changes in the runs; give the scene a &point where something moves"
+            )
         self.pairs.append(Pair(fineness, tolerance, errors, fine))
 
     def answers(self, run: Run) -> list[str]:
@@ -152,7 +162,7 @@ class Study:
         if rougher is None or looser(loose) <= loose * 1.01:
             return last
         ratio = distance(rougher.histories, rough.histories, name) / max(last, 1e-300)
-        return last * float(np.clip(1 / max(ratio - 1, 1e-3), LEAST, 1))
+        return last * float(np.clip(1 / max(ratio - 1, 1e-3), LEAST_STEPS, MOST_STEPS))
 
     def of_mesh(self, coarse, fine, steps, name):
         """Error by the mesh, its order, and whether distances fall. Distances that fall by r leave last/(r - 1)."""
@@ -164,7 +174,7 @@ class Study:
         ]
         pair = next(((a, b) for a, b in pairs if a and b and a.histories.nodes < b.histories.nodes), None)
         if pair is None or not all(name in run.histories.values or name in run.histories.forces for run in pair):
-            return last, USUAL_MESH, True
+            return UNKNOWN_ORDER * last, USUAL_MESH, True
         ratio = distance(pair[0].histories, pair[1].histories, name) / max(last, 1e-300)
         order = float(np.clip(np.log2(max(ratio, 1e-3)), 0.5, 2))
         if ratio <= NOISE and last <= 2 * steps:  # steps of two meshes are not the same
@@ -185,9 +195,9 @@ class Study:
                     for n in names
                 }
         except Failed as failure:
-            # What cannot be measured is no zero: the largest that Newton's tolerance can leave is told.
-            self.scene.say(f"   a tenth of the tolerances cannot be run, Newton's method counts a tenth: {failure}")
-            self.solve = {n: (self.accuracy / 10, 0.0) for n in names}
+            # What cannot be measured is no zero: a third of what ten times the tolerance left, or of what may be left.
+            self.scene.say(f"   a tenth of the tolerances cannot be run: {failure}")
+            self.solve = self.expected_solve or {n: (SOLVE_SHARE * self.accuracy, 0.0) for n in names}
 
     # Search -------------------------------------------------------------------------------------------------------
 
@@ -205,7 +215,7 @@ class Study:
         return Result(state, sentence, self.pairs)
 
     def _search(self):
-        failure = self._begin()
+        failure = "" if self.pairs else self._begin()
         if failure:
             return FAILS, failure
         while True:
@@ -218,16 +228,9 @@ class Study:
                     f"{pair.worst} changes as much from mesh to mesh, or from tolerance to tolerance, as before: "
                     "no finer run of these comes nearer"
                 )
-            solve = max(e.newton + e.stress for e in pair.errors.values())
-            if solve > SOLVE_SHARE * self.accuracy and self.tight < 2:
-                self.tight += 1
-                self.solve = {}
-                self.scene.say(f"Newton's method and the stress integration leave {share(solve)}: a tenth of their tolerances")
-                following = pair.fineness, pair.tolerance
-            else:
-                following, why = self._following(pair)
-                if following is None:
-                    return why
+            following, why = self._following(pair)
+            if following is None:
+                return why
             try:
                 self.measure(*following)
             except Failed as problem:
@@ -235,9 +238,10 @@ class Study:
 
     def _begin(self):
         """The first pair that can be measured; else why none can."""
-        tolerance = min(self.accuracy, LOOSEST / HALF_DECADE)
+        # Of whole half decades, so that runs serve studies of several accuracies.
+        tolerance = min(10 ** (round(2 * np.log10(self.accuracy)) / 2), LOOSEST / HALF_DECADE)
         coarse = can_halve(self.scene)
-        first = ""
+        first = None
         for fineness, a in (
             *(((1.0, tolerance),) if coarse else ()),
             (2.0, tolerance),
@@ -251,10 +255,12 @@ class Study:
                 self.measure(fineness, a)
                 return ""
             except Failed as failure:
-                first = first or str(failure)
+                first = first or failure
             except _SameMesh:
                 pass
-        return first or "finer meshes have the same nodes"
+        if first and first.code in REFUSED:
+            raise InputError(str(first))
+        return str(first or "finer meshes have the same nodes")
 
     def _try(self, *key):
         """A run for the order of the mesh, which need not come to its end."""
@@ -264,8 +270,12 @@ class Study:
             pass
 
     def _stands_still(self):
-        """Whether the last two refinements of one kind made the error of the worst answer fall by less than a quarter."""
+        """Whether the last refinements of one kind made the error of the worst answer fall by less than a quarter, or
+        the last two pairs tell more than one before them."""
         worst = self.pairs[-1].worst
+        totals = [p.total for p in self.pairs]
+        if len(totals) > 3 and min(totals[-2:]) > NOISE * min(totals[1:-2]):
+            return True
         for part, other, kind in (("mesh", "tolerance", "fineness"), ("steps", "fineness", "tolerance")):
             chain = [p for p in self.pairs if worst in p.errors]
             steps = []
@@ -282,21 +292,31 @@ class Study:
     def _following(self, pair):
         """The cheapest pair that is expected to hold the accuracy, else the one that comes nearest for its price."""
         cost, scene = Cost(scene_runs(self.scene)), self.scene
+        solve = max(e.newton + e.stress for e in pair.errors.values())
+        tighter = solve > SOLVE_SHARE * self.accuracy and self.tight < 2
+        if tighter:
+            scene.say(f"Newton's method and the stress integration leave {share(solve)}: a tenth of their tolerances")
+            self.tight += 1
+            before, self.solve = self.solve, {}
+            self.expected_solve = {n: (x / 3, y / 3) for n, (x, y) in before.items()}
+            for e in pair.errors.values():
+                e.newton, e.stress = e.newton / 3, e.stress / 3
+            if pair.total <= 0.9 * self.accuracy:
+                return (pair.fineness, pair.tolerance), None
         tries, dear = [], False
         for f in (pair.fineness, 2 * pair.fineness):
             for a in (pair.tolerance * HALF_DECADE, pair.tolerance, pair.tolerance / HALF_DECADE, pair.tolerance / 10):
                 if a > LOOSEST / HALF_DECADE * 1.01 or (f, a) == (pair.fineness, pair.tolerance):
                     continue
-                keys = [_key(*x, self.tight, self.tight * bool(scene.list_of("mud"))) for x in
-                        ((f / 2, looser(a)), (f / 2, a), (f, a))]
+                keys = [
+                    _key(*x, self.tight, self.tight * bool(scene.list_of("mud")))
+                    for x in ((f / 2, looser(a)), (f / 2, a), (f, a))
+                ]
                 missing = [k for k in keys if k not in scene.runs]
                 if not missing or any(k in scene.failed for k in missing):
                     continue
                 seconds = sum(cost(k.fineness, k.tolerance) for k in missing)
-                worst = max(
-                    e.mesh * (pair.fineness / f) ** e.order + e.steps * (a / pair.tolerance) ** USUAL_STEPS
-                    + e.newton + e.stress for e in pair.errors.values()
-                )
+                worst = self.foreseen(pair, f, a)
                 if seconds > scene.left:
                     dear = True
                 else:
@@ -307,16 +327,53 @@ class Study:
         if not tries:
             if dear:
                 return None, (BUDGET, "every run that would come nearer ends after the budget")
-            failed = list(scene.failed.values())
+            failed = [str(x) for x in scene.failed.values()]
             return None, (FAILS, failed[-1] if failed else "no run that is left comes nearer")
         if held:
             best = min(held, key=lambda x: x[1])
         else:
             best = min(tries, key=lambda x: np.log(x[0] / pair.total) + 0.15 * np.log(max(x[1], 1e-3)))
         left = f", {scene.left:.0f} s left" if scene.left < float("inf") else ""
-        scene.say(f"next: fineness {best[2]:g}, step tolerance {best[3]:.2g}, about {best[1]:.2g} s{left}; "
-                  f"expected {share(best[0])}")
+        scene.say(
+            f"next: fineness {best[2]:g}, step tolerance {best[3]:.2g}, about {best[1]:.2g} s{left}; "
+            f"expected {share(best[0])}"
+        )
         return best[2:], None
+
+    def finenesses(self):
+        """Meshes of the front: that of the finest pair, half of it and twice."""
+        return [self.pairs[-1].fineness * x for x in (0.5, 1, 2)]
+
+    def foreseen(self, pair, f, a):
+        """Total of the worst answer that is expected of another pair."""
+        return max(
+            e.mesh * (pair.fineness / f) ** e.order
+            + e.steps * (a / pair.tolerance) ** USUAL_STEPS
+            + e.newton
+            + e.stress
+            for e in pair.errors.values()
+        )
+
+    def front(self, fineness):
+        """Time and expected error of runs on a mesh."""
+        cost, pair = Cost(scene_runs(self.scene)), self.pairs[-1]
+        steps = pair.tolerance * HALF_DECADE ** np.arange(2, -3, -1)
+        return [(cost(fineness, a), self.foreseen(pair, fineness, a)) for a in steps if a < LOOSEST / 2]
+
+    def expected(self, accuracy):
+        """The cheapest pair that is expected to hold an accuracy, its total and time; at most 16 times the cells."""
+        cost, pair = Cost(scene_runs(self.scene)), self.pairs[-1]
+        tries = [
+            (cost(f, a), f, a, self.foreseen(pair, f, a))
+            for f in pair.fineness * 2.0 ** np.arange(0, 5)
+            for a in pair.tolerance * HALF_DECADE ** np.arange(1, -9, -1.0)
+            if a < LOOSEST / 2
+        ]
+        held = [x for x in tries if x[3] < 0.9 * accuracy]
+        if not held:
+            return None
+        seconds, f, a, total = min(held)
+        return f, a, total, seconds
 
     def _tell(self, pair):
         e = pair.errors[pair.worst]
@@ -337,15 +394,17 @@ class Cost:
     """Time of a run c F^p a^-q from the runs made; p and q are drawn to 2.3 and 0.35 where these do not show them."""
 
     def __init__(self, runs):
-        rows = [(1, np.log(r.key.fineness), -np.log(r.key.tolerance), np.log(max(r.seconds, 1e-3)), r.key.fineness)
-                for r in runs]
+        rows = [
+            (1, np.log(r.key.fineness), -np.log(r.key.tolerance), np.log(max(r.processor, 1e-3)), r.key.fineness)
+            for r in runs
+        ]
         rows = np.array([*rows, (0, 0.3, 0, 0.3 * 2.3, 1), (0, 0, 0.3, 0.3 * 0.35, 1)])
         weight = rows[:, 4:] ** 0.5
         fit = np.linalg.lstsq(rows[:, :3] * weight, rows[:, 3] * weight[:, 0], rcond=None)[0]
         self.fit = np.array([fit[0], np.clip(fit[1], 1, 3.5), np.clip(fit[2], 0.1, 0.7)])
-        # Through the largest run, where the orders had to be bounded.
-        last = max(rows[:-2], key=lambda row: row[3])
-        self.fit[0] += last[3] - self.fit @ last[:3]
+        # Through the largest run, where the orders had to be bounded; by the clock, as the budget is.
+        last, largest = max(zip(rows[:-2], runs), key=lambda pair: pair[0][3])
+        self.fit[0] += last[3] - self.fit @ last[:3] + np.log(largest.seconds / max(largest.processor, 1e-3))
 
     def __call__(self, fineness, tolerance):
         return float(np.exp(self.fit @ (1, np.log(fineness), -np.log(tolerance))))
@@ -380,13 +439,15 @@ def can_halve(scene) -> int:
 
 def share(x: float) -> str:
     """A share in per cent, two digits."""
-    return f"{100 * x:.2g} %"
+    return f"{100 * x:.0f} %" if x >= 1 else f"{100 * x:.2g} %"
 
 
 def sum_of(e: Error) -> str:
     """The line of an answer."""
-    return (f"total {share(e.total)} = mesh {share(e.mesh)} + steps {share(e.steps)} + Newton {share(e.newton)} + "
-            f"stress integration {share(e.stress)}")
+    return (
+        f"total {share(e.total)} = mesh {share(e.mesh)} + steps {share(e.steps)} + Newton {share(e.newton)} + "
+        f"stress integration {share(e.stress)}"
+    )
 
 
 def write_table(path, pair: Pair):

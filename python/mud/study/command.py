@@ -4,33 +4,75 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import os
 import pathlib
+import subprocess
 import sys
 
 from ..errors import InputError
-from .accuracy import BUDGET, EXIT_CODES, MET, Study, share, sum_of, write_table
-from .runs import Scene
+from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
+from .effects import SHARE, Effects, Silent
+from .runs import Failed, Scene
+from .pictures import accuracy_picture, effects_picture, price_picture
+from .switches import plain, settled, write_scene
 
 EXIT_INPUT, EXIT_INTERRUPTED = 2, 130
+LEVELS = (0.1, 0.03, 0.01)  # of price
 CODES = """exit codes: 0 met; 2 the command or the scene is refused; 3 runs of the scene fail; 21 localised; 22 does not
 converge; 23 budget used up; 130 interrupted (the same command goes on)"""
+
+
+COMMANDS = {
+    "accuracy": "runs the scene until the measured error is what is asked",
+    "price": "what 10, 3 and 1 per cent of error cost: error against time, recipe and picture",
+    "effects": "what each effect of the scene changes, by pilots that cost a share of the run",
+    "run": "leaves out what does not matter, and runs the scene until the error is what is asked",
+}
 
 
 def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(prog="mud_study", description=__doc__, epilog=CODES)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, words in (("accuracy", "runs the scene until the measured error is what is asked"),):
+    for name, words in COMMANDS.items():
         one = commands.add_parser(name, help=words, description=words, epilog=CODES)
         one.add_argument("scene", help="file of a scene of mud_host")
-        one.add_argument("--accuracy", type=_share, default=1e-2, metavar="A", help="error asked for [-], default 1e-2")
-        one.add_argument("--budget", type=float, default=3600.0, metavar="SECONDS",
-                         help="no run ends later than this; default 3600")
-        one.add_argument("--goals", nargs="+", metavar="ANSWER", help="answers that count, as top.u_z plate.force_z; "
-                         "default: goals of the scene, else unknowns of points and plates")
-        one.add_argument("--output", type=pathlib.Path, metavar="FOLDER",
-                         help="folder of the study; finished runs in it are not repeated; default: study_SCENE")
-        one.add_argument("--host", default="", metavar="PROGRAM", help="mud_host; default: MUD_HOST, or the search path")
+        if name == "effects":
+            one.add_argument(
+                "--run", action="store_true", help="writes the scene without what does not matter, and runs it"
+            )
+        if name in ("effects", "run"):
+            one.add_argument(
+                "--share",
+                type=float,
+                default=SHARE,
+                metavar="S",
+                help="of the run that pilots may cost, in "
+                f"processor time; default {SHARE:g}; inf: any, also of runs below 30 s",
+            )
+        if name in ("accuracy", "run"):
+            one.add_argument(
+                "--accuracy", type=_share, default=1e-2, metavar="A", help="error asked for [-], default 1e-2"
+            )
+        one.add_argument(
+            "--budget", type=float, default=3600.0, metavar="SECONDS", help="no run ends later than this; default 3600"
+        )
+        one.add_argument(
+            "--goals",
+            nargs="+",
+            metavar="ANSWER",
+            help="answers that count, as top.u_z plate.force_z; "
+            "default: goals of the scene, else unknowns of points and plates",
+        )
+        one.add_argument(
+            "--output",
+            type=pathlib.Path,
+            metavar="FOLDER",
+            help="folder of the study; finished runs in it are not repeated; default: study_SCENE",
+        )
+        one.add_argument(
+            "--host", default="", metavar="PROGRAM", help="mud_host; default: MUD_HOST, or the search path"
+        )
         one.add_argument("--quiet", action="store_true", help="prints the last line only")
     return top
 
@@ -42,33 +84,115 @@ def _share(text):
     return value
 
 
-def accuracy(scene: Scene, args) -> int:
-    """The study `accuracy`: table, picture, the line."""
+def accuracy(scene: Scene, args, folder=None) -> int:
+    """The study `accuracy`: table and picture in the folder of the study, the line."""
+    folder = folder or scene.folder
     study = Study(scene, args.accuracy, args.goals)
     result = study.search()
     if not result.pairs:
         print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr)
         return EXIT_CODES[result.state]
     pair = result.last
-    write_table(scene.folder / "accuracy.csv", pair)
-    from .pictures import accuracy_picture
-
-    accuracy_picture(scene.folder / "accuracy.png", result, args.accuracy)
+    write_table(folder / "accuracy.csv", pair)
+    accuracy_picture(folder / "accuracy.png", result, args.accuracy)
     if result.state != MET:
         print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr, flush=True)
     scene.say("answer, largest change, total of the error:")
     for name, e in sorted(pair.errors.items(), key=lambda item: -item[1].total):
         scene.say(f"   {name}: {e.change:.4g}, {share(e.total)}")
+    scene.say(f"results: {scene.folder / pair.run.key.folder}; errors: {folder / 'accuracy.csv'}, accuracy.png")
     print(last_line(result, scene, args.accuracy))
     return EXIT_CODES[result.state]
+
+
+def price(scene: Scene, args) -> int:
+    """The study `price`: pairs for 10, 3 and 1 %; what the budget does not reach is expected from those."""
+    study = Study(scene, LEVELS[0], args.goals)
+    rows, result = [], None
+    for level in LEVELS:
+        study.accuracy = level
+        if result is None or result.state == MET:
+            result = study.search()
+        if not result.pairs:
+            print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr)
+            return EXIT_CODES[result.state]
+        enough = [p for p in result.pairs if p.total <= level]
+        if enough:
+            best = min(enough, key=lambda p: p.run.seconds)
+            rows.append((level, MET, best.fineness, best.tolerance, best.total, best.run.seconds))
+        else:
+            expected = study.expected(level)
+            rows.append((level, result.state, *(expected or ("", "", "", ""))))
+    with open(scene.folder / "price.csv", "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(("accuracy", "state", "fineness", "step_tolerance", "total", "seconds"))
+        table.writerows([[x if isinstance(x, str) else f"{x:.4g}" for x in row] for row in rows])
+    price_picture(scene.folder / "price.png", study, rows)
+    if rows[-1][1] != MET:
+        print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr, flush=True)
+    for level, state, fineness, tolerance, total, seconds in rows:
+        known = "measured" if state == MET else "expected"
+        print(
+            f"{share(level)}: no run is known that holds it"
+            if fineness == ""
+            else f"{share(level)}: {seconds:.2g} s, {known} {share(total)}: mud_host {scene.path} "
+            f"--fineness {fineness:g} --step-tolerance {tolerance:.2g}"
+        )
+    return EXIT_CODES[MET if rows[-1][1] == MET else result.state]
+
+
+def run(scene: Scene, args) -> int:
+    """The study `run`: effects, then accuracy of what is left."""
+    path = reduced(scene, args)
+    return accuracy(Scene(path, scene.folder / "runs", scene.host, scene.left, scene.quiet), args, scene.folder)
+
+
+def effects(scene: Scene, args) -> int:
+    """The study `effects`: table, and with --run the reduced scene and its run."""
+    path = reduced(scene, args)
+    if not args.run:
+        return 0
+    done = subprocess.run([scene.host, path, "--output", scene.folder / "run", *(["--quiet"] if args.quiet else [])])
+    print(f"the run of {path}: exit code {done.returncode}, {scene.folder / 'run'}")
+    return done.returncode
+
+
+def reduced(scene: Scene, args) -> pathlib.Path:
+    """The scene without what does not matter, as a file; the scene as it stands where no pilot may be run."""
+    study = Effects(scene, args.share)
+    path = scene.folder / "reduced.nml"
+    scene.folder.mkdir(parents=True, exist_ok=True)
+    try:
+        rows = study.search()
+    except Silent as silent:
+        scene.say(f"effects: {silent}; no effect is tried")
+        rows = []
+    except Failed as failure:
+        print(f"mud_study: effects: {failure}; all stays as the scene has it", file=sys.stderr)
+        rows = []
+    for row in rows:
+        told = "" if row.influence is None else f"{share(row.influence)} of {row.answer}" if row.answer else ""
+        scene.say(
+            f"   {row.name:26s} {'on' if row.on else 'off':3s} by {'hand ' if row.by_hand else 'pilot'} "
+            f"{told:30s} {row.why}"
+        )
+    if rows:
+        study.write(scene.folder / "effects.csv")
+        effects_picture(scene.folder / "effects.png", rows, study.tolerance)
+    write_scene(study.reduced() if rows else settled(plain(scene.groups)), path, scene.path.parent)
+    quoted = f", for a run quoted at {study.quote:.3g} s" if study.quote else ""
+    scene.say(f"{study.pilots} pilots, {study.spent:.3g} s of processor time{quoted}; scene of the run: {path}")
+    return path
 
 
 def last_line(result, scene, asked):
     pair = result.last
     run = pair.run
-    return (f"{sum_of(pair.errors[pair.worst])}, of {pair.worst}; asked {share(asked)}: {result.state}; "
-            f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.2g}, {run.seconds:.3g} s; study of "
-            f"{len(scene.runs)} runs, {scene.spent / max(run.processor, 1e-3):.2g} times that run")
+    return (
+        f"{sum_of(pair.errors[pair.worst])}, of {pair.worst}; asked {share(asked)}: {result.state}; "
+        f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.2g}, {run.seconds:.3g} s; study of "
+        f"{len(scene.runs)} runs, {scene.spent / max(run.processor, 1e-3):.2g} times that run"
+    )
 
 
 def main(words: list[str] | None = None) -> int:
@@ -78,7 +202,7 @@ def main(words: list[str] | None = None) -> int:
     try:
         scene = Scene(args.scene, folder, args.host, args.budget, args.quiet)
         folder.mkdir(parents=True, exist_ok=True)
-        return {"accuracy": accuracy}[args.command](scene, args)
+        return {"accuracy": accuracy, "price": price, "effects": effects, "run": run}[args.command](scene, args)
     except InputError as problem:
         print(f"mud_study: {problem}", file=sys.stderr)
         return EXIT_INPUT

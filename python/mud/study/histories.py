@@ -97,7 +97,7 @@ def distance(rough: Histories, good: Histories, name: str) -> float:
 
 
 def between(x: np.ndarray, y: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Monotone cubics through points (x ascending), at other places between the first and the last (Fritsch, Carlson)."""
+    """Monotone cubics through points (x ascending), at places between the first and the last (Fritsch, Carlson)."""
     if len(x) < 3:
         return np.interp(at, x, y)
     h = np.diff(x)

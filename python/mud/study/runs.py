@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Runs of a scene, each made once: on other meshes, with other steps, with other keys; a folder keeps what is finished."""
+"""Runs of a scene, each made once: with other meshes, steps and keys; a folder keeps what is finished."""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import pathlib
 import resource
+import select
 import shutil
+import signal
 import subprocess
 import time
 from dataclasses import dataclass, field
@@ -31,8 +34,15 @@ WORDS_EVERY = 10.0  # a run that lasts longer says every so many seconds where i
 LOCALISED = 0.05  # share of the work that is done where the soil has lost ellipticity [-]
 
 
+CUT_OFF = "it takes more processor time than it may"
+
+
 class Failed(Exception):
-    """A run that ended before its time; the sentence says why."""
+    """A run that ended before its time; the sentence says why, the code is that of mud_host."""
+
+    def __init__(self, words: str, code: int = 0):
+        super().__init__(words)
+        self.code = code
 
 
 class BudgetUsedUp(Exception):
@@ -79,8 +89,9 @@ class Run:
 class Scene:
     """A scene and its finished runs."""
 
-    def __init__(self, path, folder, host="", budget=float("inf"), quiet=False):
+    def __init__(self, path, folder, host="", budget=math.inf, quiet=False, scale=True):
         self.path, self.folder, self.quiet = pathlib.Path(path), pathlib.Path(folder), quiet
+        self.scale = scale  # given steps become longer and shorter with the tolerance
         self.host = find_host(host)
         if not self.path.is_file():
             raise InputError(f"{self.path}: there is no such scene")
@@ -93,8 +104,8 @@ class Scene:
                 raise InputError(f"{self.path}: the group &{name} is missing")
         self.began, self.budget = time.monotonic(), budget
         self.runs: dict[Key, Run] = {}
-        self.failed: dict[Key, str] = {}
-        self.made = 0
+        self.failed: dict[Key, Failed] = {}
+        self.made, self.lost = 0, 0.0  # runs of this call; processor time of runs that failed [s]
         self._origin = self._fingerprint()
 
     def list_of(self, group: str) -> list:
@@ -110,7 +121,7 @@ class Scene:
     @property
     def spent(self) -> float:
         """Processor time of all finished runs, also of those made earlier [s]."""
-        return sum(run.processor for run in self.runs.values())
+        return self.lost + sum(run.processor for run in self.runs.values())
 
     def say(self, words: str, end: str = "\n"):
         if not self.quiet:
@@ -119,16 +130,19 @@ class Scene:
     def known(self, *key, **more) -> Run | None:
         return self.runs.get(Key(*key, **more))
 
-    def run(self, fineness, tolerance, newton=0, stress=0, settings=(), keep=False) -> Run:
-        """A finished run: known, found in the folder, or made. `keep`: with the fields that the scene asks for."""
+    def run(self, fineness, tolerance, newton=0, stress=0, settings=(), keep=False, most=math.inf) -> Run:
+        """A finished run: known, found in the folder, or made. `keep`: with the fields that the scene asks for; `most`:
+        processor time that it may take [s]."""
         key = Key(float(f"{fineness:.6g}"), float(f"{tolerance:.4g}"), newton, stress, tuple(settings))
         if key in self.failed:
-            raise Failed(self.failed[key])
+            raise self.failed[key]
         if key not in self.runs:
-            told = self._found(key) or self._make(key, keep)
+            told = self._found(key, most) or self._make(key, keep, most)
             if told["code"] not in COMPLETE:
-                self.failed[key] = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
-                raise Failed(self.failed[key])
+                words = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
+                self.failed[key] = Failed(CUT_OFF if told["code"] == -signal.SIGXCPU else words, told["code"])
+                self.lost += told["processor"]
+                raise self.failed[key]
             folder = self.folder / key.folder
             self.runs[key] = Run(key, told["seconds"], told["processor"], Histories(folder), told["localised"])
         return self.runs[key]
@@ -139,11 +153,13 @@ class Scene:
         settings = list(key.settings)
         for i, stage in enumerate(self.list_of("stage"), 1):
             given = stage.get("steps", "").lower() == "given"
-            if given:
+            if given and self.scale:
                 settings += self._given_steps(i, stage, key.tolerance)
             if key.newton:
                 default = GIVEN_NEWTON if given else min(NEWTON_LARGEST, SHARE * key.tolerance)
-                settings.append(f"stage[{i}].tolerance={max(stage.get('tolerance', default) / 10**key.newton, 1e-14):.3e}")
+                settings.append(
+                    f"stage[{i}].tolerance={max(stage.get('tolerance', default) / 10**key.newton, 1e-14):.3e}"
+                )
         if key.stress:
             for i, law in enumerate(self.list_of("mud"), 1):
                 default = min(STRESS_LARGEST, SHARE * key.tolerance)
@@ -174,7 +190,7 @@ class Scene:
                         hashed.update(named.read_bytes())
         return hashed.hexdigest()
 
-    def _found(self, key):
+    def _found(self, key, most):
         """What the folder tells of a run that was finished by an earlier call."""
         try:
             told = json.loads((self.folder / key.folder / "run.json").read_text(encoding="utf-8"))
@@ -182,10 +198,12 @@ class Scene:
             return None
         if told["origin"] != self._origin or told["words"] != self.words_of(key):
             return None
+        if told["code"] == -signal.SIGXCPU and most > told["most"]:
+            return None
         self.say(f"   found: {key}, {told['seconds']:.3g} s")
         return {**told, "words": told["said"]}
 
-    def _make(self, key, keep):
+    def _make(self, key, keep, most):
         folder = self.folder / key.folder
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
@@ -199,7 +217,7 @@ class Scene:
         self.say(f"   run {self.made}: {key} ...", end="")
         start, before = time.monotonic(), _processor()
         with open(folder / "said.txt", "w", encoding="utf-8") as said, open(folder / "errors.txt", "w") as errors:
-            process = subprocess.Popen(command, stdout=said, stderr=errors)
+            process = subprocess.Popen(command, stdout=said, stderr=errors, preexec_fn=_limit(most))
             try:
                 while process.poll() is None:
                     self._wait(process, start, folder)
@@ -218,22 +236,51 @@ class Scene:
             "code": process.returncode,
             "said": (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip()[-500:],
             "localised": _localised(folder),
+            "most": min(most, 1e9),
         }
-        if process.returncode >= 0:  # one that was killed is repeated
+        if process.returncode >= 0 or process.returncode == -signal.SIGXCPU:  # one that was killed is repeated
             part = folder / "run.json.part"
             part.write_text(json.dumps(told, indent=1), encoding="utf-8")
             part.replace(folder / "run.json")
         return {**told, "words": told["said"]}
 
     def _wait(self, process, start, folder):
-        try:
-            process.wait(timeout=min(WORDS_EVERY, max(self.left, 0.01)))
-        except subprocess.TimeoutExpired:
+        if not _ended(process, min(WORDS_EVERY, max(self.left, 0.01))):
             if self.left <= 0:
-                raise BudgetUsedUp from None
+                raise BudgetUsedUp
             lines = (folder / "said.txt").read_text(encoding="utf-8", errors="replace").splitlines()
             left = f", {self.left:.0f} s left" if self.left < float("inf") else ""
             self.say(f"\n      {time.monotonic() - start:.0f} s{left}: {lines[-1] if lines else ''}", end="")
+
+
+def _ended(process, seconds):
+    """Waits so long for the end of a process. Where the system has handles of processes it wakes at once; a wait with
+    a limit looks twenty times a second, which is long beside a short run."""
+    if not hasattr(os, "pidfd_open"):
+        try:
+            process.wait(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+    handle = os.pidfd_open(process.pid)
+    try:
+        select.select([handle], [], [], seconds)
+    finally:
+        os.close(handle)
+    return process.poll() is not None
+
+
+def _limit(most):
+    """What ends a run that takes more processor time [s]; the system counts whole seconds."""
+    if most == math.inf:
+        return None
+    whole = max(1, math.ceil(most))
+    return lambda: resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 5))
+
+
+def cut_off(words: str) -> bool:
+    """Whether a run took all the processor time that it may."""
+    return words == CUT_OFF
 
 
 def _processor():

@@ -1,0 +1,331 @@
+! SPDX-License-Identifier: MIT
+!> Warnings about the start of a scene and of its stages: balance, air, water outside, motions, plates, pulses that are
+!> over. What they tell is allowed, but usually a mistake.
+module start_look
+   use kinds, only: wp, PI
+   use generalised_alpha, only: STATIC, DYNAMIC
+   use given_pressures, only: water, suction
+   use idle_keys, only: add_warning, WARNING_LENGTH
+   use initial_conditions, only: balance_t
+   use model_types, only: model_t
+   use scene_types, only: acts_in, amplitude_t, amplitude_at, place_of, scene_item_t, fix_t, plate_t, initial_t, &
+                          LOAD_PRESSURE, LOAD_AIR, PRESCRIBED_P_A
+   use texts, only: short, whole
+   use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: list_start_warnings
+
+   real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< Of a pressure.
+   real(wp), parameter :: AT_ONCE = 0.05_wp      !< Share of the largest velocity of a motion: no start from rest.
+   real(wp), parameter :: HARD = 1.0e4_wp        !< [kPa] Of a plate; above it a force in N is likely.
+   real(wp), parameter :: BRIEF = 0.1_wp         !< Share of the time before a stage that a pulse lasts.
+contains
+   !> Adds all of them to a list. Raises no fault.
+   subroutine list_start_warnings(model, balance, warnings)
+      type(model_t), intent(in) :: model
+      type(balance_t), intent(in) :: balance
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
+      integer :: i
+
+      call look_at_balance(model, balance, warnings)
+      call look_at_air(model, warnings)
+      call look_at_water_outside(model, warnings)
+      do i = 1, size(model%fixes)
+         call look_at_motion(model, model%fixes(i), warnings)
+      end do
+      do i = 1, size(model%plates)
+         call look_at_plate(model, model%plates(i), warnings)
+      end do
+      call look_at_pulses(model, warnings)
+   end subroutine list_start_warnings
+
+   !> A start that is not in balance. Where no &initial gives a stress, a static stage finds the balance.
+   subroutine look_at_balance(model, balance, warnings)
+      type(model_t), intent(in) :: model
+      type(balance_t), intent(in) :: balance
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      character(:), allocatable :: share, why
+
+      if (.not. balance%matters) return
+      if (model%stages(1)%kind == STATIC .and. .not. any(model%initials%geostatic .or. model%initials%uniform)) return
+      share = ', where there is no stress'
+      if (balance%there > 0.0_wp) share = ', '//short(100*balance%stress/balance%there)//' % of the stress there'
+      why = ''
+      if (model%stages(1)%kind == DYNAMIC .and. size(model%absorbers) > 0) why = ' The dashpots of &absorbing '// &
+         'hold no weight: find the balance in a static stage with a &fix that is limited to it.'
+      call add_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
+                       short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
+                       '. Stage '//trim(model%stages(1)%name)//' begins with what they set free; compare rho_s, '// &
+                       'surface, surcharge, k_0 and p_w with the loads of the start.'//why, warnings)
+   end subroutine look_at_balance
+
+   !> Air that is not at atmospheric pressure where the pores hold some, though nothing of the scene asks for it.
+   subroutine look_at_air(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      character(:), allocatable :: meant
+      real(wp) :: worst, p_w, p_c, z
+      integer :: i, k
+
+      if (.not. model%domain%with_c) return
+      if (any(model%loads%kind == LOAD_AIR)) return
+      if (any(model%fixes%field == PRESCRIBED_P_A .and. (abs(model%fixes%value) > 0.0_wp .or. &
+                                                        abs(model%fixes%value_slope) > 0.0_wp))) return
+      do i = 1, size(model%initials)
+         associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
+            if (size(group%elements) == 0) cycle
+            worst = 0.0_wp
+            z = 0.0_wp
+            do k = 1, size(group%nodes)
+               p_w = water(one, model%domain%mesh%x(2, group%nodes(k)))
+               p_c = suction(one, model%domain%mesh%x(2, group%nodes(k)))
+               if (.not. (p_c > 0.0_wp .or. p_w < 0.0_wp)) cycle
+               ! Water and air both under pressure are meant, unless one sign is wrong.
+               if (p_w > 0.0_wp .and. abs(p_c - p_w) > ROUNDING*p_w) cycle
+               if (abs(p_w + p_c) <= max(abs(worst), ROUNDING*max(1.0_wp, abs(p_w), abs(p_c)))) cycle
+               worst = p_w + p_c
+               z = model%domain%mesh%x(2, group%nodes(k))
+            end do
+            if (.not. abs(worst) > 0.0_wp) cycle
+            meant = meant_by('p_c', -one%p_w, -one%p_w_slope)
+            if (.not. (abs(one%p_w) > 0.0_wp .or. abs(one%p_w_slope) > 0.0_wp)) &
+               meant = meant_by('p_w', -one%p_c, -one%p_c_slope)
+            call add_warning(place_of(one)//'the air begins with p_a = p_w + p_c = '//short(worst)//' kPa at z = '// &
+               short(z)//' m, and nothing asks for it (0: as outside). Did you mean '//meant//'?', warnings)
+         end associate
+      end do
+   contains
+      function meant_by(key, value, slope) result(text)
+         character(*), intent(in) :: key
+         real(wp), intent(in) :: value, slope   !< [kPa, kPa/m]
+         character(:), allocatable :: text
+
+         text = key//' = '//short(value)
+         if (abs(slope) > 0.0_wp) text = text//', '//key//'_slope = '//short(slope)
+      end function meant_by
+   end subroutine look_at_air
+
+   !> Water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
+   subroutine look_at_water_outside(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      logical :: carried(DISPLACEMENTS, size(model%domain%mesh%x, 2)), pressed(size(model%domain%mesh%x, 2))
+      real(wp) :: pressure, most
+      integer :: i, s, k, bare
+
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i), edges => model%domain%mesh%groups(model%fixes(i)%group)%edges)
+            if (fix%field /= AT_P_W .or. fix%hold) cycle
+            do s = 1, size(model%stages)
+               if (model%stages(s)%kind == STATIC .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
+               call find_carried(model, s, carried, pressed)
+               bare = 0
+               most = 0.0_wp
+               do k = 1, size(edges, 2)
+                  associate (x => model%domain%mesh%x, middle => edges(3, k))
+                     if (pressed(middle)) cycle
+                     ! What is held along the normal needs no load.
+                     if (carried(merge(1, 2, abs(x(2, edges(2, k)) - x(2, edges(1, k))) > &
+                                             abs(x(1, edges(2, k)) - x(1, edges(1, k)))), middle)) cycle
+                     pressure = largest_of(model, fix, x(2, middle))
+                  end associate
+                  if (.not. pressure > 0.0_wp) cycle
+                  bare = bare + 1
+                  most = max(most, pressure)
+               end do
+               if (bare == 0) cycle
+               call add_warning(place_of(fix)//'water of up to '//short(most)//' kPa stands on '//whole(bare)// &
+                  ' of the '//whole(size(edges, 2))//' edges of '''//trim(fix%group_name)//''' in stage '// &
+                  trim(model%stages(s)%name)//', and nothing bears on them: its weight is missing. Add a &load of '// &
+                  'kind = ''pressure'' with the same values, unless water is pressed in there.', warnings)
+               exit
+            end do
+         end associate
+      end do
+   end subroutine look_at_water_outside
+
+   !> Displacements that something holds or moves, and middles of edges under a pressure, in a stage.
+   subroutine find_carried(model, number, carried, pressed)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number   !< Of the stage.
+      logical, intent(out) :: carried(:, :), pressed(:)
+      integer :: i
+
+      carried = .false.
+      pressed = .false.
+      associate (groups => model%domain%mesh%groups, name => model%stages(number)%name)
+         do i = 1, size(model%fixes)
+            associate (fix => model%fixes(i))
+               if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, name)) &
+                  carried(fix%field, groups(fix%group)%nodes) = .true.
+            end associate
+         end do
+         do i = 1, size(model%loads)
+            associate (load => model%loads(i))
+               if (load%kind == LOAD_PRESSURE .and. acts_in(load%stages, name)) &
+                  pressed(groups(load%group)%edges(3, :)) = .true.
+            end associate
+         end do
+         do i = 1, size(model%contacts)
+            if (acts_in(model%contacts(i)%stages, name)) pressed(groups(model%contacts(i)%slave)%nodes) = .true.
+         end do
+         do i = 1, size(model%absorbers)
+            if (acts_in(model%absorbers(i)%stages, name)) pressed(groups(model%absorbers(i)%group)%nodes) = .true.
+         end do
+         do i = 1, size(model%plates)
+            if (model%plates(i)%group > 0) pressed(groups(model%plates(i)%group)%nodes) = .true.
+         end do
+      end associate
+   end subroutine find_carried
+
+   !> Largest value of a &fix at a height.
+   real(wp) function largest_of(model, fix, z) result(value)
+      type(model_t), intent(in) :: model
+      type(fix_t), intent(in) :: fix
+      real(wp), intent(in) :: z   !< [m]
+
+      value = fix%value + fix%value_slope*(z - fix%datum)
+      if (fix%amplitude > 0) value = max(value*maxval(model%amplitudes(fix%amplitude)%values), &
+                                         value*minval(model%amplitudes(fix%amplitude)%values))
+   end function largest_of
+
+   !> A displacement that does not begin from rest in a dynamic stage: what moves at once is struck.
+   subroutine look_at_motion(model, fix, warnings)
+      type(model_t), intent(in) :: model
+      type(fix_t), intent(in) :: fix
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      real(wp) :: start, before, after, at_rest
+      integer :: s, i
+
+      if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%hold .or. fix%amplitude == 0) return
+      if (size(model%amplitudes(fix%amplitude)%times) < 2) return
+      start = 0.0_wp
+      associate (h => model%amplitudes(fix%amplitude))
+         do s = 1, size(model%stages)
+            if (s > 1) start = start + model%stages(s - 1)%duration
+            if (model%stages(s)%kind /= DYNAMIC .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
+            after = fix%value*slope_after(h, max(start, fix%from))
+            before = 0.0_wp
+            if (s > 1 .and. fix%from <= start) then
+               if (model%stages(s - 1)%kind == DYNAMIC .and. acts_in(fix%stages, model%stages(s - 1)%name)) cycle
+            end if
+            if (s == 1 .and. fix%field == AT_U_Z) then
+               do i = 1, size(model%initials)
+                  if (any(model%domain%mesh%groups(model%initials(i)%group)%nodes == &
+                          model%domain%mesh%groups(fix%group)%nodes(1))) before = model%initials(i)%v_z
+               end do
+            end if
+            at_rest = AT_ONCE*abs(fix%value)*maxval(abs((h%values(2:) - h%values(:size(h%values) - 1)) &
+                                                        /(h%times(2:) - h%times(:size(h%times) - 1))))
+            if (abs(after - before) <= at_rest .or. .not. abs(after - before) > 0.0_wp) cycle
+            call add_warning(place_of(fix)//'the motion of '''//trim(fix%group_name)//''' begins in stage '// &
+               trim(model%stages(s)%name)//' with a velocity of '//short(after)//' m/s, and the ground with '// &
+               short(before)//': it is struck. Let history '''//trim(h%name)//''' begin without slope, or '// &
+               'prescribe motion = ''acceleration''.', warnings)
+            return
+         end do
+      end associate
+   end subroutine look_at_motion
+
+   !> Slope of a history just after a time [1/s].
+   pure real(wp) function slope_after(history, time) result(slope)
+      type(amplitude_t), intent(in) :: history
+      real(wp), intent(in) :: time   !< [s]
+      integer :: k
+
+      slope = 0.0_wp
+      k = count(history%times <= time)
+      if (k == 0 .or. k == size(history%times)) return
+      slope = (history%values(k + 1) - history%values(k))/(history%times(k + 1) - history%times(k))
+   end function slope_after
+
+   !> A force that seems to be in N, and a plate on the ground that nothing presses down.
+   subroutine look_at_plate(model, plate, warnings)
+      type(model_t), intent(in) :: model
+      type(plate_t), intent(in) :: plate
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      real(wp) :: r(2), area, forces(2)
+      integer :: i
+
+      if (plate%turns) return
+      if (plate%group > 0) then
+         associate (x => model%domain%mesh%x(1, model%domain%mesh%groups(plate%group)%nodes))
+            r = [minval(x), maxval(x)]
+         end associate
+      else
+         r = [minval(plate%corners(1, :)), maxval(plate%corners(1, :))]
+      end if
+      area = r(2) - r(1)
+      if (model%domain%axisymmetric) area = PI*(r(2)**2 - r(1)**2)
+      forces = plate%force
+      if (plate%amplitude > 0) forces = plate%force*[minval(model%amplitudes(plate%amplitude)%values), &
+                                                     maxval(model%amplitudes(plate%amplitude)%values)]
+      if (maxval(abs(forces)) > HARD*area) call add_warning(place_of(plate)//'the force of the plate '''// &
+         trim(plate%name)//''' is '//short(maxval(abs(forces))/area)//' kPa on its '//short(area)//' m2; forces '// &
+         'are in kN.', warnings)
+      if (minval(forces) < 0.0_wp .or. (plate%heavy .and. model%domain%gravity > 0.0_wp)) return
+      if (plate%group == 0) then
+         if (plate%corners(1, 2) < plate%corners(1, 1)) return
+      end if
+      do i = 1, size(model%fixes)
+         if (moves(model%fixes(i)%group_name) .and. model%fixes(i)%field <= DISPLACEMENTS) return
+      end do
+      do i = 1, size(model%loads)
+         if (moves(model%loads(i)%group_name)) return
+      end do
+      do i = 1, size(model%initials)
+         if (moves(model%initials(i)%group_name) .and. abs(model%initials(i)%v_z) > 0.0_wp) return
+      end do
+      call add_warning(place_of(plate)//'nothing presses the plate '''//trim(plate%name)//''' down: it has no '// &
+         'weight (weight = ''yes'' and gravity), no negative force (force acts upwards), no &fix and no &load.', &
+         warnings)
+   contains
+      pure logical function moves(group)
+         character(*), intent(in) :: group
+
+         moves = group == plate%name .or. (plate%joined_name /= '' .and. group == plate%joined_name)
+      end function moves
+   end subroutine look_at_plate
+
+   !> A short pulse that is over before the first dynamic stage begins, though what follows it acts there: its times may
+   !> be meant from the start of that stage.
+   subroutine look_at_pulses(model, warnings)
+      type(model_t), intent(in) :: model
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      character(1) :: none(0)
+      integer :: i
+
+      do i = 1, size(model%loads)
+         call look(model%loads(i)%scene_item_t, model%loads(i)%amplitude, model%loads(i)%stages)
+      end do
+      do i = 1, size(model%fixes)
+         call look(model%fixes(i)%scene_item_t, model%fixes(i)%amplitude, model%fixes(i)%stages)
+      end do
+      do i = 1, size(model%plates)
+         call look(model%plates(i)%scene_item_t, model%plates(i)%amplitude, none)
+      end do
+   contains
+      subroutine look(item, amplitude, stages)
+         class(scene_item_t), intent(in) :: item
+         integer, intent(in) :: amplitude
+         character(*), intent(in) :: stages(:)
+         real(wp) :: start
+         integer :: s
+
+         s = findloc(model%stages%kind, DYNAMIC, dim=1)
+         if (amplitude == 0 .or. s < 2) return
+         if (.not. acts_in(stages, model%stages(s)%name)) return
+         start = sum(model%stages(:s - 1)%duration)
+         associate (h => model%amplitudes(amplitude), n => size(model%amplitudes(amplitude)%times))
+            if (h%times(n) > start .or. h%times(n) - h%times(1) > BRIEF*start) return
+            if (abs(h%values(n) - h%values(1)) > 0.0_wp .or. .not. any(abs(h%values - h%values(1)) > 0.0_wp)) return
+            ! What acts from that stage on alone is told by its first factor.
+            if (.not. any([(acts_in(stages, model%stages(i)%name), i=1, s - 1)])) return
+            call add_warning(place_of(item)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &
+               ' s, before stage '//trim(model%stages(s)%name)//' begins at '//short(start)//' s; times of a '// &
+               '&history are those of the run, not of a stage.', warnings)
+         end associate
+      end subroutine look
+   end subroutine look_at_pulses
+end module start_look
