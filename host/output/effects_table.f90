@@ -91,8 +91,8 @@ contains
             row = quoted(trim(t%name))//','//trim(merge('yes', 'no ', t%present))//','// &
                   trim(merge('on ', 'off', t%on))//','//trim(by(t))//','
             if (t%influence >= 0.0_wp) then
-               row = row//short(t%influence)//','//short(t%change)//','//quoted(trim(t%answer))//','//whole(t%unknowns)//','// &
-                     short(t%seconds)//','
+               row = row//short(t%influence)//','//short(t%change)//','//quoted(trim(t%answer))//','// &
+                     whole(t%unknowns)//','//short(t%seconds)//','
             else
                row = row//',,,,,'
             end if
@@ -122,7 +122,8 @@ contains
       do i = 1, size(account%influences)
          associate (t => account%influences(i), effect => table(account%influences(i)%effect))
             call write_line(file, quoted(trim(effect%name))//','//trim(merge('yes', 'no ', effect%present))//','// &
-                            quoted(trim(t%answer))//','//short(t%range)//','//short(t%change)//','//short(t%share), fault)
+                            quoted(trim(t%answer))//','//short(t%range)//','//short(t%change)//','// &
+                            short(t%share), fault)
          end associate
       end do
       call close_csv(file, fault)
