@@ -308,10 +308,7 @@ class Study:
             for a in (pair.tolerance * HALF_DECADE, pair.tolerance, pair.tolerance / HALF_DECADE, pair.tolerance / 10):
                 if a > LOOSEST / HALF_DECADE * 1.01 or (f, a) == (pair.fineness, pair.tolerance):
                     continue
-                keys = [
-                    _key(*x, self.tight, self.tight * bool(scene.list_of("mud")))
-                    for x in ((f / 2, looser(a)), (f / 2, a), (f, a))
-                ]
+                keys = [self.key(*x) for x in ((f / 2, looser(a)), (f / 2, a), (f, a))]
                 missing = [k for k in keys if k not in scene.runs]
                 if not missing or any(k in scene.failed for k in missing):
                     continue
@@ -339,6 +336,10 @@ class Study:
             f"expected {share(best[0])}"
         )
         return best[2:], None
+
+    def key(self, fineness, tolerance) -> Key:
+        """Of a run with the tolerances of Newton and the stress integration as they are now."""
+        return _key(fineness, tolerance, self.tight, self.tight * bool(self.scene.list_of("mud")))
 
     def finenesses(self):
         """Meshes of the front: that of the finest pair, half of it and twice."""

@@ -7,6 +7,7 @@ import argparse
 import csv
 import os
 import pathlib
+import shlex
 import subprocess
 import sys
 
@@ -101,6 +102,7 @@ def accuracy(scene: Scene, args, folder=None) -> int:
     for name, e in sorted(pair.errors.items(), key=lambda item: -item[1].total):
         scene.say(f"   {name}: {e.change:.4g}, {share(e.total)}")
     scene.say(f"results: {scene.folder / pair.run.key.folder}; errors: {folder / 'accuracy.csv'}, accuracy.png")
+    scene.say(f"that run: {recipe(scene, pair.run.key)}")
     print(last_line(result, scene, args.accuracy))
     return EXIT_CODES[result.state]
 
@@ -108,7 +110,7 @@ def accuracy(scene: Scene, args, folder=None) -> int:
 def price(scene: Scene, args) -> int:
     """The study `price`: pairs for 10, 3 and 1 %; what the budget does not reach is expected from those."""
     study = Study(scene, LEVELS[0], args.goals)
-    rows, result = [], None
+    rows, recipes, result = [], [], None
     for level in LEVELS:
         study.accuracy = level
         if result is None or result.state == MET:
@@ -120,9 +122,11 @@ def price(scene: Scene, args) -> int:
         if enough:
             best = min(enough, key=lambda p: p.run.seconds)
             rows.append((level, MET, best.fineness, best.tolerance, best.total, best.run.seconds))
+            recipes.append(recipe(scene, best.run.key))
         else:
             expected = study.expected(level)
             rows.append((level, result.state, *(expected or ("", "", "", ""))))
+            recipes.append(recipe(scene, study.key(*expected[:2])) if expected else "")
     with open(scene.folder / "price.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(("accuracy", "state", "fineness", "step_tolerance", "total", "seconds"))
@@ -130,13 +134,11 @@ def price(scene: Scene, args) -> int:
     price_picture(scene.folder / "price.png", study, rows)
     if rows[-1][1] != MET:
         print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr, flush=True)
-    for level, state, fineness, tolerance, total, seconds in rows:
+    for (level, state, _, _, total, seconds), command in zip(rows, recipes):
         known = "measured" if state == MET else "expected"
         print(
-            f"{share(level)}: no run is known that holds it"
-            if fineness == ""
-            else f"{share(level)}: {seconds:.2g} s, {known} {share(total)}: mud_host {scene.path} "
-            f"--fineness {fineness:g} --step-tolerance {tolerance:.2g}"
+            f"{share(level)}: "
+            + (f"{seconds:.2g} s, {known} {share(total)}: {command}" if command else "no run is known that holds it")
         )
     return EXIT_CODES[MET if rows[-1][1] == MET else result.state]
 
@@ -185,12 +187,17 @@ def reduced(scene: Scene, args) -> pathlib.Path:
     return path
 
 
+def recipe(scene, key) -> str:
+    """The command that makes a run."""
+    return shlex.join(["mud_host", str(scene.path), *scene.words_of(key)])
+
+
 def last_line(result, scene, asked):
     pair = result.last
     run = pair.run
     return (
         f"{sum_of(pair.errors[pair.worst])}, of {pair.worst}; asked {share(asked)}: {result.state}; "
-        f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.2g}, {run.seconds:.3g} s; study of "
+        f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.4g}, {run.seconds:.3g} s; study of "
         f"{len(scene.runs)} runs, {scene.spent / max(run.processor, 1e-3):.2g} times that run"
     )
 
