@@ -145,6 +145,15 @@ def test_the_error_told_of_a_pulse_is_that_of_dalembert():
     check("a picture", (folder / "accuracy.png").stat().st_size > 10000)
 
 
+def test_forces_are_answers_where_they_are_goals():
+    _, errors, _ = study("accuracy", BLOCK.format(""), "force", "--goals", "bottom.force_z", "top.u_z")
+    force = errors["bottom.force_z"]
+    check(
+        "10 kPa on a circle of 1 m", np.isclose(force["change"], 10 * np.pi, rtol=1e-3) and force["total"] < 1e-6, force
+    )
+    check("and nothing else", sorted(errors) == ["bottom.force_z", "top.u_z"], errors)
+
+
 def test_finished_runs_are_found_again_and_others_repeated():
     done, _, folder = study("accuracy", BLOCK.format(""), "again")
     made = done.stdout.count("   run ")

@@ -14,7 +14,7 @@ import sys
 from ..errors import InputError
 from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
 from .effects import SHARE, Effects, Silent
-from .runs import Failed, Scene
+from .runs import BudgetUsedUp, Failed, Scene
 from .pictures import accuracy_picture, effects_picture, price_picture
 from .switches import plain, settled, write_scene
 
@@ -168,6 +168,9 @@ def reduced(scene: Scene, args) -> pathlib.Path:
         rows = study.search()
     except Silent as silent:
         scene.say(f"effects: {silent}; no effect is tried")
+        rows = []
+    except BudgetUsedUp:
+        scene.say("effects: the budget ends before the pilots do; all stays as the scene has it")
         rows = []
     except Failed as failure:
         print(f"mud_study: effects: {failure}; all stays as the scene has it", file=sys.stderr)
