@@ -145,6 +145,14 @@ def test_the_error_told_of_a_pulse_is_that_of_dalembert():
     check("a picture", (folder / "accuracy.png").stat().st_size > 10000)
 
 
+def test_meshes_of_files_are_split():
+    ring = root / "verification/studies/price/ring.nml"
+    text = ring.read_text().replace("file = '", f"file = '{ring.parent}/")
+    done, errors, folder = study("accuracy", text, "ring", "--accuracy", "5e-2")
+    runs = {one.name.split("_")[0] for one in folder.glob("F*")}
+    check("no mesh is coarser than that of the file", errors and runs <= {"F1", "F2", "F4"}, runs)
+
+
 def test_forces_are_answers_where_they_are_goals():
     _, errors, _ = study("accuracy", BLOCK.format(""), "force", "--goals", "bottom.force_z", "top.u_z")
     force = errors["bottom.force_z"]
