@@ -201,6 +201,7 @@ import math, pathlib, sys
 words = sys.argv
 F, a = (float(words[words.index(x) + 1]) for x in ("--fineness", "--step-tolerance"))
 folder = pathlib.Path(words[words.index("--output") + 1])
+newton = next((float(x.partition("=")[2]) for x in words if x.startswith("stage[1].tolerance")), 1e-4)
 u = {formula}
 n = max(2, int(2 * F) + 1)
 (folder / "histories.csv").write_text("time,p.u_z\\n" + "".join(f"{{t / 20}},{{u * t / 20}}\\n" for t in range(21)))
@@ -228,6 +229,13 @@ def test_errors_of_a_known_law_are_told():
         F, a = map(float, re.search(r"fineness (\S+), step tolerance (\S+),", done.stdout.splitlines()[-1]).groups())
         told = errors["p.u_z"]["total"]
         check(f"{name}: told {told:.4f} for {true(F, a):.4f}", told / 5 <= true(F, a) <= 2 * told, (F, a))
+
+
+def test_newton_is_tightened_where_it_leaves_too_much():
+    done, errors, folder = fake("newton", "1 + 0.01 / F**2 + 80 * newton", code=0)
+    told = errors["p.u_z"]["newton"]
+    check("a tenth of the tolerance, and what that leaves", 80e-5 / 2 < told < 80e-5 * 2, errors)
+    check("the command of the run says so", "'stage[1].tolerance=1.000e-05'" in done.stdout, done.stdout)
 
 
 def test_what_has_no_limit_does_not_converge():
