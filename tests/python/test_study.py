@@ -401,6 +401,11 @@ def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
         "what is open starts as the keys ask, and runs",
         (folder / "run/histories.csv").exists() and "fields = 'u-p_w-p_c'" in (folder / "reduced.nml").read_text(),
     )
+    check(
+        "what is off and was not tried is told",
+        "no key says inertia in load, relative_acceleration, nothing in" in done.stderr,
+        done.stderr,
+    )
     done, _, _ = study("effects", strip(40), "short")
     check("one where the run is short", "1 pilots" in done.stdout and "less than 30 s" in done.stdout, done.stdout)
     done, _, folder = study("effects", strip(80), "long")

@@ -185,6 +185,13 @@ def reduced(scene: Scene, args) -> pathlib.Path:
         study.write(scene.folder / "effects.csv")
         effects_picture(scene.folder / "effects.png", rows, study.tolerance)
     write_scene(study.reduced() if rows else settled(plain(scene.groups)), path, scene.path.parent)
+    untried = [r.name for r in study.rows if not (r.by_hand or r.on or (rows and r.influence is not None))]
+    if untried:
+        print(
+            f"mud_study: no key says {', '.join(untried)}, nothing in the scene asks for it, and no pilot has tried "
+            "it: off. Say it by its key, or try it by --share inf",
+            file=sys.stderr,
+        )
     quoted = f", for a run quoted at {study.quote:.3g} s" if study.quote else ""
     scene.say(f"{study.pilots} pilots, {study.spent:.3g} s of processor time{quoted}; scene of the run: {path}")
     return path
