@@ -145,6 +145,23 @@ def test_the_error_told_of_a_pulse_is_that_of_dalembert():
     check("a picture", (folder / "accuracy.png").stat().st_size > 10000)
 
 
+def test_meshes_of_files_are_split():
+    ring = root / "verification/studies/price/ring.nml"
+    text = ring.read_text().replace("file = '", f"file = '{ring.parent}/")
+    done, errors, folder = study("accuracy", text, "ring", "--accuracy", "5e-2")
+    runs = {one.name.split("_")[0] for one in folder.glob("F*")}
+    check("no mesh is coarser than that of the file", errors and runs <= {"F1", "F2", "F4"}, runs)
+
+
+def test_forces_are_answers_where_they_are_goals():
+    _, errors, _ = study("accuracy", BLOCK.format(""), "force", "--goals", "bottom.force_z", "top.u_z")
+    force = errors["bottom.force_z"]
+    check(
+        "10 kPa on a circle of 1 m", np.isclose(force["change"], 10 * np.pi, rtol=1e-3) and force["total"] < 1e-6, force
+    )
+    check("and nothing else", sorted(errors) == ["bottom.force_z", "top.u_z"], errors)
+
+
 def test_finished_runs_are_found_again_and_others_repeated():
     done, _, folder = study("accuracy", BLOCK.format(""), "again")
     made = done.stdout.count("   run ")
@@ -184,6 +201,7 @@ import math, pathlib, sys
 words = sys.argv
 F, a = (float(words[words.index(x) + 1]) for x in ("--fineness", "--step-tolerance"))
 folder = pathlib.Path(words[words.index("--output") + 1])
+newton = next((float(x.partition("=")[2]) for x in words if x.startswith("stage[1].tolerance")), 1e-4)
 u = {formula}
 n = max(2, int(2 * F) + 1)
 (folder / "histories.csv").write_text("time,p.u_z\\n" + "".join(f"{{t / 20}},{{u * t / 20}}\\n" for t in range(21)))
@@ -211,6 +229,13 @@ def test_errors_of_a_known_law_are_told():
         F, a = map(float, re.search(r"fineness (\S+), step tolerance (\S+),", done.stdout.splitlines()[-1]).groups())
         told = errors["p.u_z"]["total"]
         check(f"{name}: told {told:.4f} for {true(F, a):.4f}", told / 5 <= true(F, a) <= 2 * told, (F, a))
+
+
+def test_newton_is_tightened_where_it_leaves_too_much():
+    done, errors, folder = fake("newton", "1 + 0.01 / F**2 + 80 * newton", code=0)
+    told = errors["p.u_z"]["newton"]
+    check("a tenth of the tolerance, and what that leaves", 80e-5 / 2 < told < 80e-5 * 2, errors)
+    check("the command of the run says so", "'stage[1].tolerance=1.000e-05'" in done.stdout, done.stdout)
 
 
 def test_what_has_no_limit_does_not_converge():
@@ -375,6 +400,11 @@ def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
     check(
         "what is open starts as the keys ask, and runs",
         (folder / "run/histories.csv").exists() and "fields = 'u-p_w-p_c'" in (folder / "reduced.nml").read_text(),
+    )
+    check(
+        "what is off and was not tried is told",
+        "no key says inertia in load, relative_acceleration, nothing in" in done.stderr,
+        done.stderr,
     )
     done, _, _ = study("effects", strip(40), "short")
     check("one where the run is short", "1 pilots" in done.stdout and "less than 30 s" in done.stdout, done.stdout)

@@ -158,8 +158,8 @@ class Effects:
         return cells if self.share == math.inf else max(cells, math.isqrt(elements // MANY_ELEMENTS[0]))
 
     def _afford(self):
-        """Silent where the mesh and the steps of pilots cannot be so much coarser that the least of them are within their
-        share: then the first one would be lost."""
+        """Silent where the mesh and the steps of pilots cannot be so much coarser that the least of them are within
+        their share: then the first one would be lost."""
         times = self.cells**CELLS * GROWTH ** math.log2(LEAST_TOLERANCE / self.accuracy)
         for stage in many(self.reading, "stage"):
             if self._is_given(stage):
