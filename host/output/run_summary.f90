@@ -13,7 +13,7 @@ module run_summary
    use warnings, only: repeat_warnings
    implicit none (type, external)
    private
-   public :: peaks_t, new_peaks, note_peaks, print_summary, with_unit, counted
+   public :: peaks_t, new_peaks, note_peaks, print_summary, counted
 
    !> Largest magnitudes of the unknowns at the named points so far, with their signs, and when.
    type :: peaks_t
