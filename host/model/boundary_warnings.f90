@@ -14,6 +14,7 @@ module boundary_warnings
    public :: list_boundary_warnings
 
    real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of a prescribed value.
+   real(wp), parameter :: AT_ONCE = 1.0e-3_wp    !< Share of the range of a history that is no sudden load.
 
    character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
 contains
@@ -211,7 +212,8 @@ contains
          if (amplitude == 0) return
          associate (h => model%amplitudes(amplitude))
             factor = amplitude_at(h, start)
-            if (.not. any(h%times < start .and. abs(h%values - factor) > 0.0_wp)) return
+            if (.not. any(h%times < start .and. abs(h%values - factor) > AT_ONCE*(maxval(h%values) - minval(h%values)))) &
+               return
             call add_warning(place_of(item)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))// &
                ' s, and this acts from '//short(start)//' s on, at once with the factor '//short(factor)// &
                trim(merge(', which then stays; ', ';                   ', h%times(size(h%times)) <= start))// &
