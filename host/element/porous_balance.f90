@@ -325,7 +325,7 @@ contains
          end if
          drive = k%grad_w + k%grad_c + mix%rho_a*body
          response(GA + 1:GA + 2) = kappa*drive + dissolved
-         drift = drift + kappa*(abs(k%grad_w) + abs(k%grad_c) + mix%rho_a*abs(body))
+         drift = drift + kappa*(abs(k%grad_w + k%grad_c) + mix%rho_a*abs(body))
          response(GW + 1:GW + 2) = response(GW + 1:GW + 2) + response(GA + 1:GA + 2)
          if (.not. with_tangent) return
          d_stored = n*room/k_a*(scheme%c_p - a_dot*mix%d_k_a*l/k_a)

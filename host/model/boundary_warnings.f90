@@ -13,6 +13,9 @@ module boundary_warnings
    private
    public :: list_boundary_warnings
 
+   real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of a prescribed value.
+   real(wp), parameter :: AT_ONCE = 1.0e-3_wp    !< Share of the range of a history that is no sudden load.
+
    character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
 contains
    !> Adds all of them to a list. Raises no fault.
@@ -38,7 +41,7 @@ contains
       do i = 2, size(model%fixes)
          associate (one => model%fixes(i))
             before: do j = 1, i - 1
-               if (model%fixes(j)%field /= one%field .or. .not. differ(model%fixes(j), one)) cycle
+               if (model%fixes(j)%field /= one%field) cycle
                ! Where one side is given and another limited, as at a water level, the given one counts.
                if (model%fixes(j)%limits .neqv. one%limits) cycle
                if (model%fixes(j)%from >= one%until .or. one%from >= model%fixes(j)%until) cycle
@@ -46,7 +49,8 @@ contains
                   if (.not. (acts_in(one%stages, model%stages(s)%name) .and. &
                              acts_in(model%fixes(j)%stages, model%stages(s)%name))) cycle
                   associate (nodes => model%domain%mesh%groups(model%fixes(j)%group)%nodes)
-                     n = findloc([(any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
+                     n = findloc([(differ(model%fixes(j), one, model%domain%mesh%x(2, nodes(node))) .and. &
+                                   any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
                                    node=1, size(nodes))], .true., dim=1)
                      if (n == 0) cycle before
                      call add_warning(place_of(one)//WORDS(one%field)//' of the node at ('// &
@@ -72,13 +76,19 @@ contains
             warnings)
       end do
    contains
-      pure logical function differ(a, b)
+      pure logical function differ(a, b, z)
          type(fix_t), intent(in) :: a, b
+         real(wp), intent(in) :: z   !< [m]
+         real(wp) :: parts(2, 2), values(2), least
 
-         differ = (a%hold .neqv. b%hold) .or. a%amplitude /= b%amplitude .or. abs(a%value - b%value) > 0.0_wp .or. &
-                  abs(a%value_slope - b%value_slope) > 0.0_wp .or. &
-                  (abs(a%value_slope) > 0.0_wp .and. abs(a%datum - b%datum) > 0.0_wp)
-         if (a%hold .and. b%hold) differ = .false.
+         differ = .false.
+         if (a%hold .and. b%hold) return
+         parts = reshape([a%value, a%value_slope*(z - a%datum), b%value, b%value_slope*(z - b%datum)], [2, 2])
+         values = sum(parts, dim=1)
+         least = ROUNDING*maxval(abs(parts))
+         ! Histories of nothing are one.
+         differ = (a%hold .neqv. b%hold) .or. (a%acceleration .neqv. b%acceleration) .or. &
+                  abs(values(2) - values(1)) > least .or. (a%amplitude /= b%amplitude .and. any(abs(values) > least))
       end function differ
    end subroutine look_at_fixes
 
@@ -202,7 +212,8 @@ contains
          if (amplitude == 0) return
          associate (h => model%amplitudes(amplitude))
             factor = amplitude_at(h, start)
-            if (.not. any(h%times < start .and. abs(h%values - factor) > 0.0_wp)) return
+            if (.not. any(h%times < start .and. abs(h%values - factor) > AT_ONCE*(maxval(h%values) - minval(h%values)))) &
+               return
             call add_warning(place_of(item)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))// &
                ' s, and this acts from '//short(start)//' s on, at once with the factor '//short(factor)// &
                trim(merge(', which then stays; ', ';                   ', h%times(size(h%times)) <= start))// &

@@ -23,7 +23,7 @@ module checkpoints
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '15', &
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '16', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
@@ -81,8 +81,8 @@ contains
          'what acted at once at the start of the stage and is applied evenly over it')
       if (allocated(run%damping_stress)) call put(file, 'damping_stress', run%damping_stress, 'kPa', &
          'stress of the damping in proportion to the stiffness')
-      if (size(model%points) > 0) call put(file, 'peaks', [tables%peaks%value, tables%peaks%time], &
-         'm, kPa, s', 'largest unknowns of the named points so far, and when')
+      if (size(model%points) > 0) call put(file, 'peaks', [tables%peaks%value, tables%peaks%time, &
+         tables%peaks%dt], 'm, kPa, s', 'largest unknowns of the named points so far, when, and the step')
       call put(file, 'control', numbers_of(run%control), '-', 'control of the time step: see control_state')
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
                                                       'flow that is subtracted, forces that hold the ground')
@@ -187,10 +187,11 @@ contains
 
       tables%peaks = new_peaks(points)
       associate (n => size(tables%peaks%value))
-         allocate (list(2*n))
+         allocate (list(3*n))
          if (n > 0) call get(file, 'peaks', list)
          tables%peaks%value = reshape(list(:n), shape(tables%peaks%value))
-         tables%peaks%time = reshape(list(n + 1:), shape(tables%peaks%time))
+         tables%peaks%time = reshape(list(n + 1:2*n), shape(tables%peaks%time))
+         tables%peaks%dt = reshape(list(2*n + 1:), shape(tables%peaks%dt))
       end associate
    end subroutine take_peaks
 

@@ -1,17 +1,18 @@
 ! SPDX-License-Identifier: MIT
-!> One run a folder: the file `running` holds the number of the process that writes there. That of a process that has
-!> ended without removing it is taken over.
+!> One run a folder: the file `running` holds the number of the process that writes there, and its host. That of a
+!> process of this host that has ended without removing it is taken over.
 module folder_lock
-   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use files, only: make_folder
-   use texts, only: whole
+   use texts, only: from_c, whole
    implicit none (type, external)
    private
    public :: lock_folder, unlock_folder
 
    character(*), parameter :: LOCK = 'running'
    integer, parameter :: ATTEMPTS = 2   !< The second after the file of a dead process is removed.
+   integer, parameter :: NAME_LENGTH = 256   !< Of a host.
 
    interface
       integer(c_int) function getpid() bind(c)
@@ -23,6 +24,13 @@ module folder_lock
          import :: c_int
          integer(c_int), value :: process, signal
       end function kill
+
+      !> The name of this host, ended by a zero; 0 if it is known.
+      integer(c_int) function gethostname(name, length) bind(c)
+         import :: c_char, c_int, c_size_t
+         character(kind=c_char), intent(out) :: name(*)
+         integer(c_size_t), value :: length
+      end function gethostname
    end interface
 contains
    !> Takes a folder; nothing is done where there is none. Fault EXIT_OUTPUT: another run writes to it.
@@ -30,6 +38,7 @@ contains
       character(*), intent(in) :: folder
       logical, intent(in) :: make   !< The folder.
       type(fault_t), intent(inout) :: fault
+      character(NAME_LENGTH) :: host
       integer :: unit, status, i
       integer(c_int) :: owner
 
@@ -37,18 +46,17 @@ contains
       do i = 1, ATTEMPTS
          open (newunit=unit, file=folder//'/'//LOCK, status='new', action='write', iostat=status)
          if (status == 0) then
-            write (unit, '(i0)') getpid()
+            write (unit, '(i0,1x,a)') getpid(), this_host()
             close (unit)
             return
          end if
-         open (newunit=unit, file=folder//'/'//LOCK, status='old', action='read', iostat=status)
-         if (status /= 0) return   ! A folder that cannot be written to is told with its first table.
-         read (unit, *, iostat=status) owner
-         close (unit)
+         call read_lock(folder, owner, host, status)
+         if (status > 0) return   ! A folder that cannot be written to is told with its first table.
          if (status == 0) then
-            if (kill(owner, 0_c_int) == 0) then
-               call raise(fault, EXIT_OUTPUT, 'Process '//whole(int(owner))//' writes its results to '//folder// &
-                          ' (its file '''//LOCK//''' says so): wait for its end, or choose another --output.')
+            if (lives(owner, host)) then
+               call raise(fault, EXIT_OUTPUT, 'Process '//whole(int(owner))//' of '//trim(host)//' writes its '// &
+                          'results to '//folder//' (its file '''//LOCK//''' says so): wait for its end, or choose '// &
+                          'another --output. If that process is no run of mud_host any more, remove the file.')
                return
             end if
          end if
@@ -56,18 +64,61 @@ contains
       end do
    end subroutine lock_folder
 
+   !> Whether another process may still write. Of another host nothing is known; a number may come again, as ours.
+   logical function lives(owner, host)
+      integer(c_int), intent(in) :: owner
+      character(*), intent(in) :: host
+      character(:), allocatable :: here
+      integer(c_int) :: own, status
+
+      here = this_host()
+      own = getpid()
+      status = kill(owner, 0_c_int)
+      lives = host /= here .or. (status == 0 .and. owner /= own)
+   end function lives
+
+   !> The name of this host.
+   function this_host() result(host)
+      character(:), allocatable :: host
+      character(NAME_LENGTH, c_char) :: name
+
+      host = 'localhost'
+      name = ''
+      if (gethostname(name, int(NAME_LENGTH - 1, c_size_t)) /= 0) return
+      if (from_c(name) /= '') host = trim(from_c(name))
+   end function this_host
+
+   !> What the file says. status: 0; below 0 where it says nothing, as that of a process that was killed while it wrote;
+   !> above 0 where it cannot be read.
+   subroutine read_lock(folder, owner, host, status)
+      character(*), intent(in) :: folder
+      integer(c_int), intent(out) :: owner
+      character(*), intent(out) :: host
+      integer, intent(out) :: status
+      integer :: unit, problem
+
+      owner = 0
+      host = ''
+      open (newunit=unit, file=folder//'/'//LOCK, status='old', action='read', iostat=status)
+      if (status /= 0) return
+      read (unit, *, iostat=problem) owner, host
+      close (unit)
+      if (problem /= 0) status = -1
+   end subroutine read_lock
+
    !> Gives the folder free, if it is ours.
    subroutine unlock_folder(folder)
       character(*), intent(in) :: folder
-      integer :: unit, status
-      integer(c_int) :: owner
+      character(NAME_LENGTH) :: host
+      character(:), allocatable :: here
+      integer :: status
+      integer(c_int) :: owner, own
 
-      open (newunit=unit, file=folder//'/'//LOCK, status='old', action='read', iostat=status)
+      call read_lock(folder, owner, host, status)
       if (status /= 0) return
-      read (unit, *, iostat=status) owner
-      close (unit)
-      if (status /= 0) return
-      if (owner == getpid()) call remove_lock(folder)
+      here = this_host()
+      own = getpid()
+      if (owner == own .and. host == here) call remove_lock(folder)
    end subroutine unlock_folder
 
    subroutine remove_lock(folder)

@@ -79,7 +79,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       checkpoint = .false.
-      call note_peaks(model, run%state, self%tables%peaks)
+      call note_peaks(model, run%state, report%dt, self%tables%peaks)
       associate (stage => model%stages(report%stage), step => run%at%step)
          call write_ledger(self%tables, run%state%time, report, run%ledger, fault)
          call write_contacts(self%tables, model, run%system%contacts, report%dt, run%state, run%ledger%contact, fault)

@@ -15,9 +15,11 @@ module run_summary
    private
    public :: peaks_t, new_peaks, note_peaks, print_summary, counted
 
-   !> Largest magnitudes of the unknowns at the named points so far, with their signs, and when.
+   integer, parameter :: DIGITS_SAID = 3   !< Of a value; of a time as many as tell it from that of the step before.
+
+   !> Largest magnitudes of the unknowns at the named points so far, with their signs, when, and the step to it.
    type :: peaks_t
-      real(wp), allocatable :: value(:, :), time(:, :)   !< (FIELDS, points) [m, kPa], [s]
+      real(wp), allocatable :: value(:, :), time(:, :), dt(:, :)   !< (FIELDS, points) [m, kPa], [s], [s]
    end type peaks_t
 contains
    !> Peaks before the first step.
@@ -25,13 +27,14 @@ contains
       integer, intent(in) :: points
       type(peaks_t) :: peaks
 
-      allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), source=0.0_wp)
+      allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
    end function new_peaks
 
    !> After every accepted step.
-   pure subroutine note_peaks(model, state, peaks)
+   pure subroutine note_peaks(model, state, dt, peaks)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state
+      real(wp), intent(in) :: dt   !< Of the step [s].
       type(peaks_t), intent(inout) :: peaks
       real(wp) :: x(FIELDS)
       integer :: i, f
@@ -42,6 +45,7 @@ contains
             if (.not. abs(x(f)) > abs(peaks%value(f, i))) cycle
             peaks%value(f, i) = x(f)
             peaks%time(f, i) = state%time
+            peaks%dt(f, i) = dt
          end do
       end do
    end subroutine note_peaks
@@ -61,7 +65,7 @@ contains
             if (.not. abs(peaks%value(f, i)) > 0.0_wp .or. all(model%dofs%of(f, model%points(i)%nodes) == 0)) cycle
             write (unit, '(a)') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f))//' '// &
                with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
-               with_unit(peaks%time(f, i), 's')
+               with_unit(peaks%time(f, i), 's', peaks%dt(f, i))
          end do
       end do
       text = counted(run%steps, 'step')
@@ -81,31 +85,55 @@ contains
    end subroutine print_summary
 
    !> A value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
-   !> millionths.
-   pure function with_unit(value, unit) result(text)
+   !> millionths. Of three digits, or as many as resolve a part of it.
+   pure function with_unit(value, unit, part) result(text)
       real(wp), intent(in) :: value   !< [m], [s] or another unit.
       character(*), intent(in) :: unit
+      real(wp), intent(in), optional :: part   !< In the same unit; > 0.
       character(:), allocatable :: text
+      integer :: digits
 
+      digits = DIGITS_SAID
+      if (present(part)) digits = min(precision(value), max(digits, 1 + order(value) - order(part)))
       if (unit == 'kPa' .or. abs(value) >= 0.1_wp .or. .not. abs(value) > 0.0_wp) then
-         text = three_digits(value)//' '//unit
+         text = rounded(value, digits)//' '//unit
       else if (abs(value) >= 1.0e-4_wp) then
-         text = three_digits(1.0e3_wp*value)//' m'//unit
+         text = rounded(1.0e3_wp*value, digits)//' m'//unit
       else
-         text = three_digits(1.0e6_wp*value)//' u'//unit
+         text = rounded(1.0e6_wp*value, digits)//' u'//unit
       end if
    end function with_unit
 
-   pure function three_digits(value) result(text)
+   !> The power of ten of the first digit of a number, 0 of zero.
+   pure integer function order(value)
       real(wp), intent(in) :: value
-      character(:), allocatable :: text
-      character(32) :: digits
-      real(wp) :: rounded
 
-      write (digits, '(es11.2e3)') value
-      read (digits, *) rounded
-      text = short(rounded)
-   end function three_digits
+      order = 0
+      if (abs(value) > 0.0_wp) order = floor(log10(abs(value)))
+   end function order
+
+   !> A number of so many significant digits.
+   pure function rounded(value, digits) result(text)
+      real(wp), intent(in) :: value
+      integer, intent(in) :: digits
+      character(:), allocatable :: text
+      character(32) :: line
+      real(wp) :: near
+
+      write (line, '(es'//whole(digits + 8)//'.'//whole(digits - 1)//'e3)') value
+      read (line, *) near
+      text = short(near)
+      ! More digits than a number of a message has.
+      if (abs(near - value_of(text)) <= 0.0_wp) return
+      write (line, '(f0.'//whole(max(0, digits - 1 - order(near)))//')') near
+      text = trim(line)
+   contains
+      pure real(wp) function value_of(number)
+         character(*), intent(in) :: number
+
+         read (number, *) value_of
+      end function value_of
+   end function rounded
 
    !> "1 step", "2 steps".
    pure function counted(number, noun) result(text)

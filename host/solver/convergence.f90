@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> The error of an iteration, and whether it may end. The error of a field is |R_f| over the largest of |sum of the
-!> magnitudes of the elements' contributions|, 1e-6 of its largest value so far, and a floor, over the free unknowns; a
-!> rigid body counts by itself too. Measured by change, what counts of the contributions to a displacement is what the
-!> step changes: a weight that rests hides nothing. The floor of a volume balance is 1e-4 of the strain
-!> rates and of the parts of the fluxes in it, that of momentum 1e-4 of the weight: where nothing flows, or a body falls
-!> freely, the balance of every element is nothing but rounding.
+!> magnitudes of the elements' contributions|, 1e-6 of its largest value in a step so far, and a floor, over the free
+!> unknowns; a rigid body counts by itself too. Measured by change, what counts of the contributions to a displacement
+!> is what the step changes: a weight that rests hides nothing. The floor of a volume balance is 1e-4 of the strain
+!> rates and of the parts of the fluxes in it, that of momentum 1e-4 of the weight: where nothing flows, or a body
+!> falls freely, the balance of every element is nothing but rounding.
 !> docs/theory/host.md section 5.1.
 module convergence
    use kinds, only: wp
@@ -63,6 +63,7 @@ module convergence
       real(wp) :: before(FIELDS) = 0.0_wp     !< The same of the correction before it; 0: there was none.
       logical :: balanced = .false.           !< The residual begins and ends at the rounding of the forces.
       integer :: worst_field = 0, worst_unknown = 0
+      real(wp) :: forces(FIELDS) = 0.0_wp     !< Magnitudes of all contributions, in the norm of a field [kN, m3/s].
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
       logical :: refused_guess = .false.      !< The first guess was refused, the step began at the unchanged state.
       real(wp) :: best_error = huge(1.0_wp)             !< Smallest error so far that was progress [-].
@@ -270,27 +271,28 @@ contains
       if (counts .and. dofs%field(i) == AT_P_C) counts = .not. constraint%air(dofs%node(i))
    end function counts
 
-   !> Errors of the fields. docs/theory/host.md section 5.1. Updates `largest`, and in the log the errors [-], the worst
-   !> field and its worst unknown.
+   !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its worst
+   !> unknown, the forces.
    pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
       real(wp), intent(in) :: rhs(:)   !< (unknowns) Residual [kN, m3/s].
       real(wp), intent(in) :: rounding(FIELDS)   !< Scales of which the tolerance asks for no more than rounding.
-      real(wp), intent(inout) :: largest(FIELDS)
+      real(wp), intent(in) :: largest(FIELDS)    !< Forces of the steps so far.
       type(log_t), intent(inout) :: log
-      real(wp) :: s(FIELDS), floor(FIELDS), scales(FIELDS), worst
+      real(wp) :: s(FIELDS), floor(FIELDS), scales(FIELDS), most(FIELDS), worst
       integer :: i
 
       ! Always the forces themselves: their rounding is the floor of what changes.
       call add_scales(dofs, constraint, assembly, .false., s, floor)
-      largest = max(largest, sqrt(s))
-      scales = max(field_scales(dofs, constraint, assembly, largest), rounding)
+      log%forces = sqrt(s)
+      most = max(largest, log%forces)
+      scales = max(field_scales(dofs, constraint, assembly, most), rounding)
       log%error = residual_norms(dofs, constraint, rhs)/scales
       do i = 1, dofs%n
          if (is_body(constraint, i)) &
-            log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(constraint, assembly, largest, i))
+            log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(constraint, assembly, most, i))
       end do
       log%worst_field = maxloc(log%error, 1)
       log%forces_over_scale = sqrt(s(log%worst_field))/scales(log%worst_field)

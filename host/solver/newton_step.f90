@@ -159,6 +159,8 @@ contains
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
          with_tangent = .false.
       end do
+      ! Those of iterates on the way, and of steps that fail, may be of any size.
+      system%largest = max(system%largest, log%forces)
       system%first_error = maxval(log%first_error)
       call follow_friction(system%contacts, fresh=.true.)
       assembly%slopes%known = .true.

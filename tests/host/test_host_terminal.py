@@ -4,6 +4,7 @@ import os
 import pty
 import re
 import signal
+import socket
 import subprocess
 import time
 
@@ -67,9 +68,25 @@ def test_peaks_and_their_times_are_told_in_the_unit_of_a_reader():
     check("memory and times are for --verbose", "MB" not in done.stdout and "factorisation" not in done.stdout)
     check("and are there", all(word in run(work / "small.nml", work / "small", "--verbose").stdout
                                for word in ("MB", "factorisation")))
-    one = SMALL.replace("dt = 0.01", "dt = 0.2 steps = 'given'").replace("duration = 1 ", "duration = 0.2 ")
-    one = run(written("one", one), work / "one").stdout
-    check("1 step", "Stage s: 1 step, time 0.2 s" in one and "\n1 step." in one, one)
+    # No segment of the history ends within the step.
+    one = run(written("one", SMALL.replace("dt = 0.01", "dt = 1 steps = 'given'").replace("0, 0.2, 2", "0, 1.2, 2")),
+              work / "one").stdout
+    check("1 step", "Stage s: 1 step, time 1 s" in one and "\n1 step." in one, one)
+
+
+def test_a_late_peak_has_a_time_that_tells_it_from_the_step_before():
+    # A static stage of an hour and a half comes first: three digits of the time would be those of its end.
+    late = SMALL.replace("&stage", "&stage name = 'w' analysis = 'static' duration = 5400 dt = 5400 /\n&stage").replace(
+        "times = 0, 0.2, 2", "times = 5400, 5400.2, 5402")
+    for name, more in (("late", ""), ("resumed", "checkpoint_steps = 60")):
+        scene, out = written(name, late.replace("fields = 'u'", "fields = 'u' " + more)), work / name
+        said = run(scene, out).stdout
+        if name == "resumed" and (out / "checkpoint.h5").exists():   # the peak came before the checkpoint
+            said = run(scene, out, "--restart", out / "checkpoint.h5").stdout
+        rows = tables.columns(out / "histories.csv")
+        when = rows["time"][np.argmax(np.abs(rows["corner.u_z"]))]
+        told = re.search(r"^corner\.u_z \S+ mm at (\S+) s$", said, re.MULTILINE)
+        check(f"{name}: to a part of a step of 0.01 s", told and abs(float(told[1]) - when) < 5e-3, (when, said))
 
 
 def test_warnings_are_said_again_at_the_end():
@@ -88,7 +105,8 @@ def test_a_second_run_in_a_folder_is_refused_while_the_first_lives():
     check("the first runs", first.poll() is None)
     second = run(scene, out)
     check("the second is refused with the process", second.returncode == 4
-          and f"Process {first.pid} writes its results to {out}" in second.stderr, second.stderr)
+          and f"Process {first.pid} of {socket.gethostname()} writes its results to {out}" in second.stderr,
+          second.stderr)
     elsewhere = run(written("small", SMALL), work / "elsewhere")
     check("another folder is free", elsewhere.returncode == 0, elsewhere.stderr)
     check("the folder is free after a run", not (work / "elsewhere/running").exists())
@@ -97,6 +115,16 @@ def test_a_second_run_in_a_folder_is_refused_while_the_first_lives():
     check("a killed run leaves its file", (out / "running").exists())
     over = run(written("small", SMALL), out, "--quiet")
     check("which is taken over", over.returncode == 0 and not (out / "running").exists(), over.stderr)
+    # In a container every run may have the same number.
+    here = socket.gethostname()
+    words = f'echo $$ {here} > "{out}/running"; exec "{host}" "{work}/small.nml" --output "{out}" --quiet'
+    own = subprocess.run(["sh", "-c", words], capture_output=True, text=True, env=environment)
+    check("and that of a dead run with the number of this one", own.returncode == 0, own.stderr)
+    (out / "running").write_text(f"{first.pid} another-{here}\n")
+    other = run(work / "small.nml", out)
+    check("of a process of another host nothing is known", other.returncode == 4
+          and f"Process {first.pid} of another-{here} writes" in other.stderr and "remove the file" in other.stderr,
+          other.stderr)
 
 
 def test_a_killed_run_leaves_whole_rows():

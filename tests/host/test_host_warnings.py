@@ -268,6 +268,20 @@ def test_small_mesh():
     same = SCENE.replace("&fix group = 'bottom' field = 'u_r' /", "&fix group = 'bottom' field = 'u_r' value = 0 /\n"
                          "&fix group = 'left' field = 'u_r' stages = 'load' /")
     check("two supports of one value are no doubt", warnings(same, "--check") == [], warnings(same, "--check"))
+    # A history of 1 s goes on for 1e-5 s before the stage in which it acts: that is no jump.
+    begun = SCENE.replace("&stage", "&stage name = 'rest' analysis = 'static' duration = 1e-5 dt = 1e-5 /\n&stage").replace(
+        "history = 'h'", "history = 'h' stages = 'load'")
+    check("a history that has hardly begun is no doubt", not any("at once" in line for line in warnings(begun, "--check")),
+          warnings(begun, "--check"))
+    # Water at z = 0 of a falling level and air above it both ask for 0 there, whatever the history.
+    level = SCENE.replace("&fix group = 'top' field = 'p_w'", "&history name = 'fall' times = 0, 1 values = 1, 0.5 /\n"
+                          "&fix group = 'right' field = 'p_w' value_slope = -10 datum = {} history = 'fall' /\n"
+                          "&fix group = 'top' field = 'p_w'")
+    check("values that agree at the nodes they share are no doubt", warnings(level.format(0), "--check") == [],
+          warnings(level.format(0), "--check"))
+    check("those that do not are", ["p_w of the node at (2, 0) m has two &fix" in line
+                                    for line in warnings(level.format(-1), "--check")] == [True],
+          warnings(level.format(-1), "--check"))
     doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1").replace("dt = 0.5", "dt = 0.05")
     check("told at the start of a run", len(warnings(doubtful)) == 1)
     check("told by a quiet run as well", len(warnings(doubtful, "--quiet")) == 1)
