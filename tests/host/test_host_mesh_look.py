@@ -262,12 +262,10 @@ def test_names_with_commas_stand_in_quotes():
     text = text.replace("value = 20", "value = 20 history = 'h'")
     text = text.replace("dt = 1", "dt = 0.5") + "&history name = 'h' times = 0, 1 values = 0, 1 /\n"
     mesh = block(curves=lambda groups: [(name.replace("bottom", "bottom, fixed"), edges) for name, edges in groups])
-    done = looked("commas", mesh, text, "--verify")
+    done = looked("commas", mesh, text)
     check("it runs, and its tables are read back", done.returncode == 0, done.stderr)
     rows = tables.columns(work / "commas/reactions_s.csv")
     check("the force stands under its name", abs(rows["bottom, fixed.force_z"][-1] - 20) < 1e-9, rows)
-    answers = {row["answer"]: row for row in tables.rows(work / "commas/answers.csv")}
-    check("and in the answers", abs(float(answers["s: bottom, fixed.force_z"]["largest_change"]) - 10) < 1e-9, answers)
 
 
 def test_nodes_at_one_place_that_nothing_joins_are_told():
