@@ -161,7 +161,8 @@ def draw_fields(run, frames, names, factor, output):
             axis.set_ylabel(f"t = {run.times[frame]:.6g} s\nz [m]" if column == 0 or below else "")
     notes = ([f"displacements x {factor:g}"] if factor else []) + ([f"heights x {stretch:.3g}"] if stretch > 1 else [])
     title(figure, run.scene + (f" ({', '.join(notes)})" if notes else ""))
-    figure.savefig(output)
+    # Panels that keep the shape of the mesh are narrower than their places: labels may stand outside of these.
+    figure.savefig(output, bbox_inches="tight", pad_inches=0.1)
     plt.close(figure)
     print(output)
 

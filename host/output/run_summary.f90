@@ -6,8 +6,9 @@ module run_summary
    use control_state, only: LIMITS, LIMIT_NAMES
    use model_types, only: model_t
    use named_points, only: unknowns_at
-   use porous_domain, only: state_t
+   use porous_domain, only: state_t, UNDRAINED
    use run_state, only: run_t
+   use scene_types, only: point_t
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    use warnings, only: repeat_warnings
@@ -16,6 +17,8 @@ module run_summary
    public :: peaks_t, new_peaks, note_peaks, print_summary, counted
 
    integer, parameter :: DIGITS_SAID = 3   !< Of a value; of a time as many as tell it from that of the step before.
+
+   real(wp), parameter :: NOISE = 1.0e-10_wp   !< Of the largest displacement or pressure: rounding.
 
    !> Largest magnitudes of the unknowns at the named points so far, with their signs, when, and the step to it.
    type :: peaks_t
@@ -57,12 +60,17 @@ contains
       type(run_t), intent(in) :: run
       type(peaks_t), intent(in) :: peaks
       character(:), allocatable :: text
+      real(wp) :: most(2)
       integer :: i, f
 
       if (run%steps == 0) return
+      most = [maxval([0.0_wp, abs(peaks%value(:DISPLACEMENTS, :))]), &
+              maxval([0.0_wp, abs(peaks%value(DISPLACEMENTS + 1:, :))])]
       do i = 1, size(model%points)
          do f = 1, FIELDS
-            if (.not. abs(peaks%value(f, i)) > 0.0_wp .or. all(model%dofs%of(f, model%points(i)%nodes) == 0)) cycle
+            if (.not. abs(peaks%value(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
+            if (all(model%dofs%of(f, model%points(i)%nodes) == 0) .and. .not. keeps_fluids(model, model%points(i), f)) &
+               cycle
             write (unit, '(a)') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f))//' '// &
                with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
                with_unit(peaks%time(f, i), 's', peaks%dt(f, i))
@@ -83,6 +91,18 @@ contains
       write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '//trim(model%file)// &
          '" measures them.'
    end subroutine print_summary
+
+   !> Whether a field is a pressure of an undrained region: it follows from the strains of its element.
+   pure logical function keeps_fluids(model, point, field)
+      type(model_t), intent(in) :: model
+      type(point_t), intent(in) :: point
+      integer, intent(in) :: field
+
+      associate (m => model%domain)
+         keeps_fluids = field > DISPLACEMENTS .and. &
+                        m%regions(m%region_of((point%gauss - 1)/m%rule + 1))%drainage == UNDRAINED
+      end associate
+   end function keeps_fluids
 
    !> A value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
    !> millionths. Of three digits, or as many as resolve a part of it.

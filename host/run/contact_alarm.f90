@@ -5,6 +5,7 @@ module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
    use contact_interfaces, only: contacts_t, probe_contacts, shortest_edge
+   use generalised_alpha, only: DYNAMIC
    use model_types, only: model_t
    use scene_types, only: acts_in
    use texts, only: short
@@ -51,11 +52,22 @@ contains
                call print_warning('contact '//trim(one%name)//' begins with surfaces that overlap by up to '// &
                   short(depth)//' m, near ('//short(place(1))//', '//short(place(2))//') m. The penalty presses '// &
                   'there with '//short(t%probe%pressure(at))//' kPa and stores '//short(t%probe%energy)//' kJ, '// &
-                  'which no load has done: a static stage finds the prestress, a dynamic one throws the surfaces '// &
-                  'apart. If no prestress is meant, move the plate or the mesh so that the surfaces only touch.')
+                  'which no load has done: '//advice(model%stages(number)%kind, ROUNDING_DEPTH*shortest_edge(t%slave)))
             end associate
          end associate
       end do
+   contains
+      !> Without inertia surfaces that only touch hold nothing.
+      function advice(kind, least) result(text)
+         integer, intent(in) :: kind
+         real(wp), intent(in) :: least   !< Overlap that is not told [m].
+         character(:), allocatable :: text
+
+         text = 'a dynamic stage throws the surfaces apart. If that is not meant, move the plate or the mesh so '// &
+                'that they only touch, or find the prestress in a static stage before.'
+         if (kind /= DYNAMIC) text = 'the stage finds the prestress. If none is meant, move the plate or the mesh '// &
+            'until they overlap by no more than '//short(least)//' m, which is enough for what contact alone holds.'
+      end function advice
    end subroutine warn_of_overlap
 
    !> After an accepted step; once for every contact, on standard error, also where the run is quiet. From 1e-3 of the

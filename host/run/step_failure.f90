@@ -30,7 +30,7 @@ contains
       real(wp), intent(in) :: time, dt   !< At the end of the step, and its length [s].
       type(fault_t), intent(inout) :: fault
       character(600) :: text
-      character(:), allocatable :: place
+      character(:), allocatable :: place, alone
       integer :: e, node
 
       place = 'Stage '//trim(stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
@@ -42,8 +42,8 @@ contains
             ! No law was asked: that is a failure of the iteration.
             if (run%assembly%bad%code == STRAIN_TOO_LARGE) then
                call raise(fault, EXIT_CONVERGENCE, place//', is strained by more than 1 in the step: the iteration '// &
-                          'did not converge or the step is far too long'//unstressed(run)//weakened(model, time)// &
-                          '; use a smaller dt or more cuts.')
+                          'did not converge, the step is far too long, or the load is far beyond the stiffness'// &
+                          unstressed(run)//weakened(model, time)//advice(stage, run))
                return
             end if
             call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
@@ -58,9 +58,12 @@ contains
                           'load in smaller steps, or look for a missing &fix.')
                return
             end if
+            alone = bodies_on_contact(model, stage)
+            if (alone /= '') alone = alone//', and surfaces that only touch hold nothing: let them overlap by a '// &
+               'millionth of an edge, give a &plate weight = ''yes'' beside gravity, or begin with a dynamic stage'
             call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &
-                       'undetermined'//bodies_on_contact(model, stage)//'; add a &fix, or look for a region '// &
-                       'without stiffness or a plate without contact.')
+                       'undetermined'//alone//'; add a &fix, or look for a region without stiffness or a plate '// &
+                       'without contact.')
          case (SOLVER_FAILED)
             call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
                        whole(model%dofs%n)//' unknowns?')
@@ -70,20 +73,22 @@ contains
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations'//soft_points(model, run)//'; '//what_is_left(stage, log)//' (allowed '// &
                        short(stage%tolerance)//'), worst at '//place_of(model, node)// &
-                       unstressed(run)//weakened(model, time)//advice(run))
+                       unstressed(run)//weakened(model, time)//advice(stage, run))
          end select
       end associate
    end subroutine explain_failure
 
    !> What helps where Newton's method does not converge: where shorter attempts have failed as well, none of them.
-   function advice(run) result(text)
+   function advice(stage, run) result(text)
+      type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
 
       text = '; use a smaller dt, more cuts or a better tangent.'
-      if (run%at%cuts > 1) text = '. '//whole(run%at%cuts - 1)//' longer attempts failed before it: shorter '// &
-         'steps do not help here. Try a given dt (steps = ''given'' in &stage) of the length of the steps before, '// &
-         'a better tangent (tangent of the material) or a larger tolerance.'
+      if (run%at%cuts <= 1) return
+      text = '. '//whole(run%at%cuts - 1)//' longer attempts failed before it: shorter steps do not help here. Try '
+      if (stage%controlled) text = text//'a given dt (steps = ''given'' in &stage) of the length of the steps before, '
+      text = text//'a better tangent (tangent of the material) or a larger tolerance.'
    end function advice
 
    !> How much of a strength is left, where one changes with time: a body without equilibrium has no other step.

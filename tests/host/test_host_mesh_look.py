@@ -267,7 +267,7 @@ def test_names_with_commas_stand_in_quotes():
     text = text.replace("dt = 1", "dt = 0.5") + "&history name = 'h' times = 0, 1 values = 0, 1 /\n"
     mesh = block(curves=lambda groups: [(name.replace("bottom", "bottom, fixed"), edges) for name, edges in groups])
     done = looked("commas", mesh, text)
-    check("it runs", done.returncode == 0, done.stderr)
+    check("it runs, and its tables are read back", done.returncode == 0, done.stderr)
     rows = tables.columns(work / "commas/reactions_s.csv")
     check("the force stands under its name", abs(rows["bottom, fixed.force_z"][-1] - 20) < 1e-9, rows)
 

@@ -11,6 +11,7 @@ import sys
 import time
 
 import h5py
+import matplotlib.pyplot as plt
 import meshio
 import numpy as np
 
@@ -435,6 +436,18 @@ def test_uninterrupted_run():
     check("picture beside a plate", done.returncode == 0 and (one / "fields.png").exists(), done.stderr)
     done = subprocess.run([*plot[:2], work], capture_output=True, text=True)
     check("picture of no run", done.returncode == 1 and "no fields of mud_host" in done.stderr, done.stderr)
+
+
+def test_labels_of_a_tall_mesh_stand_inside_the_picture():
+    block = (root / "host/README.md").read_text().split("<!-- first scene -->")[1].split("```")[1]
+    tall = work / "tall.nml"
+    tall.write_text(block.replace("z = 0, 1  z_cells = 4", "z = 0, 6  z_cells = 24"))
+    done = run(tall, work / "tall", "--quiet")
+    check("a column runs", done.returncode == 0, done.stderr)
+    done = subprocess.run([*plot[:2], work / "tall"], capture_output=True, text=True)
+    check("its picture", done.returncode == 0, done.stderr)
+    pixels = plt.imread(work / "tall/fields.png")[:, :, :3]
+    check("nothing is cut off at its sides", np.all(pixels[:, :3] == 1) and np.all(pixels[:, -3:] == 1))
 
 
 def test_400_points():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What an error of Newton's method is measured by where hardly any force is there: a press fit, a plate in free flight,
 very small units, very short steps of a flow; and pressures where water cannot drain yet."""
+import re
 import sys
 
 import numpy as np
@@ -50,6 +51,34 @@ def test_a_plate_that_begins_inside_presses_as_one_that_is_moved_in():
     text = PRESSED.format(third=1 / 3, size=1, young=2e4, z=0.998, dt=1, penalty=2e8, way=0)
     done = start("checked", text, "--check")
     check("--check tells it as well", "overlap by up to 0.002 m" in done.stderr, done.stderr)
+
+
+def test_the_advice_on_a_plate_without_weight_leads_to_its_settlement():
+    # A plate of 0.4 m2 with 30 kN on a layer of 1.5 m that cannot widen: 75 kPa over a modulus of 1.2 times Young's.
+    loaded = """&scene name = 'loaded' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, 0.4 r_cells = 2 z = 0, 1.5 z_cells = 3 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&region material = 'soil' void_ratio = 0 /
+&stage name = 's' analysis = 'static' duration = 1 dt = 1 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&plate name = 'p' r = 0, 0.4 z = {z} mass = 0.001 force = -30 /
+&contact name = 'c' slave = 'top' master = 'p' penalty = 1e8 /
+"""
+    touching = start("touching", loaded.format(z=1.5))
+    check("a plate that only touches: the way out is told", touching.returncode == 13
+          and "contact alone holds the plate 'p', and surfaces that only touch hold nothing" in touching.stderr
+          and "overlap by a millionth of an edge" in touching.stderr, touching.stderr)
+    deep = start("deep", loaded.format(z=1.499))
+    told = re.search(r"until they overlap by no more than (\S+) m", deep.stderr)
+    check("an overlap in a static stage: how little is enough is told", told and "only touch" not in deep.stderr,
+          deep.stderr)
+    if told:
+        done = start("seated", loaded.format(z=1.5 - 0.9 * float(told[1])))
+        check("that much runs without a warning", done.returncode == 0 and "overlap" not in done.stderr, done.stderr)
+        sunk = float(tables.rows(work / "seated/contact.csv")[-1]["p.u_z"])
+        check("to the settlement", abs(sunk / (-75 * 1.5 / 1.2e4) - 1) < 1e-3, sunk)
 
 
 def test_two_bodies_that_overlap_are_pressed_together():
@@ -248,8 +277,8 @@ DRY = """&scene name = 'dry' geometry = 'plane_strain' fields = 'u-p_w-p_c' grav
 
 @pytest.mark.parametrize("aired", ["all", "top"])
 def test_rain_on_dry_sand_stays_there(aired):
-    # Suctions of dry sand are steep, and air flows a thousand times as easily as water: what its gradients of p_w and p_c
-    # would move, if they did not cancel, is no measure of the water's balance.
+    # Suctions of dry sand are steep, and air flows a thousand times as easily as water: what its gradients of p_w and
+    # p_c would move, if they did not cancel, is no measure of the water's balance.
     if not ran(f"dry_{aired}", DRY.format(aired=aired)):
         return
 

@@ -89,6 +89,30 @@ def test_a_late_peak_has_a_time_that_tells_it_from_the_step_before():
         check(f"{name}: to a part of a step of 0.01 s", told and abs(float(told[1]) - when) < 5e-3, (when, said))
 
 
+def test_peaks_of_undrained_ground_are_told_and_rounding_is_not():
+    # Water that cannot leave bears a load of 30 kPa but for its share of the stiffness; nothing moves sideways.
+    closed = """&scene name = 'closed' geometry = 'plane_strain' fields = 'u-p_w' /
+&mesh r = 0, 1 r_cells = 2 z = 0, 1, 3 z_cells = 2, 3 /
+&elastic name = 'm' young = 9e3 poisson = 0.3 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region material = 'm' void_ratio = 0.6 drainage = 'undrained' /
+&region group = 'block_1_2' material = 'm' void_ratio = 0.6 permeability = 'k' /
+&stage name = 's' analysis = 'quasi_static' duration = 1e-3 dt = 1e-3 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 30 /
+&point name = 'low' r = 0.5 z = 0.4 /
+&point name = 'high' r = 0.5 z = 1.9 /
+"""
+    said = run(written("closed", closed), work / "closed").stdout
+    stiff, water = 9e3*0.7/1.3/0.4, 2.2e6/(0.6/1.6)
+    told = {name: float(value) for name, value in re.findall(r"^(\S+)\.p_w (\S+) kPa at 1 ms$", said, re.MULTILINE)}
+    check("the pressure of both", sorted(told) == ["high", "low"], said)
+    check("what the water bears", all(abs(p / (30*water/(water + stiff)) - 1) < 2e-3 for p in told.values()), told)
+    check("no rounding", "u_z" in said and "u_r" not in said, said)
+
+
 def test_warnings_are_said_again_at_the_end():
     done = run(written("warned", SMALL.replace("&stage", "&permeability name = 'k' intrinsic = 1e-12 /\n&stage")),
                work / "warned")
