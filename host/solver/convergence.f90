@@ -271,8 +271,8 @@ contains
       if (counts .and. dofs%field(i) == AT_P_C) counts = .not. constraint%air(dofs%node(i))
    end function counts
 
-   !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its worst
-   !> unknown, the forces.
+   !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its
+   !> worst unknown, the forces.
    pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
