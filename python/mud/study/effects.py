@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import copy
 import csv
+import hashlib
 import math
 
 import numpy as np
@@ -51,7 +52,7 @@ class Pilot:
             and (f.get("value") or f.get("value_slope"))
             and f.get("motion") != "acceleration"
         }
-        self.processor = run.processor
+        self.processor, self.folder = run.processor, folder
         table = HostRun(folder).histories
         self.time = table["time"]
         self.nodes = run.histories.nodes
@@ -113,7 +114,7 @@ class Effects:
         write_scene(text, path, self.folder)
         pilots = Scene(
             path,
-            self.scene.folder / "pilots" / cut_name(path),
+            self.scene.folder / "pilots" / hash_of(path.read_bytes()),
             self.scene.host,
             self.scene.left,
             quiet=True,
@@ -188,7 +189,7 @@ class Effects:
                 break
         if base is None:
             raise Failed(why)
-        ends = self._ends(reading, base[1])
+        ends = self._ends(reading, *base)
         try:
             again = self.pilot(reading, base[1], MOST_TIMES_THE_BASE * base[0].processor, ends)
             self.noise = max(self.noise, difference(base[0], again)[0])
@@ -210,16 +211,16 @@ class Effects:
         if self.share != math.inf and self.quote < LEAST_RUN:
             raise Silent(f"the run is quoted at {self.quote:.2g} s of processor time, less than {LEAST_RUN:g} s")
 
-    def _ends(self, reading, level):
-        """Keys of every stage that prescribe the steps which the last pilot took."""
-        folder = self.last_folder()
-        table = HostRun(folder).ledger
-        said = (folder / "said.txt").read_text(encoding="utf-8")
+    def _ends(self, reading, pilot, level):
+        """Keys of every stage that prescribe the steps which a pilot took."""
+        table = HostRun(pilot.folder).ledger
+        said = (pilot.folder / "said.txt").read_text(encoding="utf-8")
         keys, start = [], 0.0
         for i, stage in enumerate(many(reading, "stage"), 1):
             rows = table["stage"] == i
-            file = self.scene.folder / "pilots" / f"steps_{len(list((self.scene.folder / 'pilots').iterdir()))}_{i}.txt"
             times = table["time"][rows] - start
+            # Named by what it holds, so that the same command finds the pilots that it made.
+            file = self.scene.folder / "pilots" / f"steps_{hash_of(np.stack([times, table['dt'][rows]]).tobytes())}.txt"
             np.savetxt(file, np.column_stack([times, table["dt"][rows]]), fmt="%.17e")
             start += float(stage["duration"])
             words = {
@@ -236,9 +237,6 @@ class Effects:
                 words["rho_inf"] = float(line.rsplit("rho_inf", 1)[1].strip(" .,"))
             keys.append(words)
         return keys
-
-    def last_folder(self):
-        return max((self.scene.folder / "pilots").glob("*/F*"), key=lambda p: (p / "run.json").stat().st_mtime_ns)
 
     # Search -------------------------------------------------------------------------------------------------------
 
@@ -480,10 +478,8 @@ def is_there(scene, row, folder):
     return is_present(scene, row.kind, row.at, folder)
 
 
-def cut_name(path):
-    import hashlib
-
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:10]
+def hash_of(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:10]
 
 
 def difference(a: Pilot, b: Pilot) -> tuple[float, str]:

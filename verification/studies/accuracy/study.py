@@ -7,12 +7,12 @@ import csv
 import pathlib
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[2]
-sys.path.insert(0, str(ROOT / "python"))
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "verification"), str(ROOT / "common")]
 from mud.study.accuracy import Study  # noqa: E402
 from mud.study.histories import distance  # noqa: E402
 from mud.study.runs import BudgetUsedUp, Failed, Scene  # noqa: E402
+from tools import results  # noqa: E402
 
 STUDIES = ROOT / "verification/studies"
 SCENES = [STUDIES / "cost/scenes" / f"{x}.nml" for x in "drop footing harmonic mandel push rain sand".split()]
@@ -57,11 +57,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scenes", nargs="*", type=pathlib.Path)
     parser.add_argument("--accuracy", type=float, default=1e-2)
-    parser.add_argument("--budget", type=float, default=600.0)
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path("study"))
-    parser.add_argument("--output", type=pathlib.Path, default=HERE / "results.csv")
+    parser.add_argument("--budget", type=float, default=60.0)
+    parser.add_argument("--work", type=pathlib.Path)
     args = parser.parse_args()
-    with open(args.output, "w", newline="", encoding="utf-8") as file:
+    made = results.folder(__file__)
+    args.work = args.work or made
+    with open(made / "results.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(HEAD)
         for path in args.scenes or SCENES:
