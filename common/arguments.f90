@@ -96,11 +96,24 @@ contains
             call raise(fault, EXIT_INPUT, trim(options(k)%name)//' needs '//trim(options(k)%takes)//'; '//hint//'.')
             return
          end if
-         if (.not. allocated(options(k)%values)) allocate (options(k)%values(0))
-         options(k)%values = [options(k)%values, options(k)%value]
+         call append(options(k)%value, options(k)%values)
       end do
       if (operand == '') call raise(fault, EXIT_INPUT, 'No '//subject//' is named; '//hint//'.')
    end subroutine parse_words
+
+   pure subroutine append(value, values)
+      character(WORD_LENGTH), intent(in) :: value
+      character(WORD_LENGTH), allocatable, intent(inout) :: values(:)
+      character(WORD_LENGTH), allocatable :: more(:)
+      integer :: n
+
+      n = 0
+      if (allocated(values)) n = size(values)
+      allocate (more(n + 1))
+      if (n > 0) more(:n) = values
+      more(n + 1) = value
+      call move_alloc(more, values)
+   end subroutine append
 
    !> A dash and more; the dash alone is a name, that of the standard output.
    pure logical function looks_like_option(word)

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Pictures of a run of mud_host: plot_run.py FOLDER [--fields NAME ...] [--times T ...] [--histories NAME ...]
-or, after mud_host --price: plot_run.py FOLDER --price
 
 Writes fields.png (a row for every time, a column for every field) and histories.png (a panel for every quantity, a line
 for every point) into the folder. Without options: the moment of the largest displacement, and of everything what changes.
-With --price it writes price.png: total error against time for every mesh and accuracy.
 """
 import argparse
 import pathlib
@@ -217,38 +215,6 @@ def draw_histories(run, time, table, names, output):
     print(output)
 
 
-def draw_price(folder, output):
-    """Error against time: a line a mesh, the cheapest runs, and where the scene stands as it is."""
-    rows = tables.rows(folder / "price.csv")
-    for row in rows:
-        row.update({name: float(value) for name, value in row.items() if name != "answer"})
-    figure, axis = plt.subplots(figsize=(7.2, 4.6), layout="constrained")
-    meshes = sorted({row["mesh"] for row in rows})
-    for colour, mesh in zip(COLOURS, meshes):
-        line = sorted((row for row in rows if row["mesh"] == mesh), key=lambda row: row["seconds"])
-        axis.loglog([row["seconds"] for row in line], [100*row["error"] for row in line], "o-", ms=4, color=colour,
-                    label=f"{line[0]['elements']:.0f} elements")
-    front = []
-    for row in sorted(rows, key=lambda row: row["seconds"]):
-        if not front or row["error"] < front[-1]["error"]:
-            front.append(row)
-    axis.loglog([row["seconds"] for row in front], [100*row["error"] for row in front], color="#bbbbbb", lw=7, alpha=0.5,
-                solid_capstyle="round", zorder=0, label="cheapest way to an error")
-    for row in rows:
-        if row["is_scene"]:
-            axis.errorbar(row["seconds"], 100*row["error"], marker="s", ms=9, mfc="none", mec="black", ls="none",
-                          ecolor="#999999", lw=0.8, label="the scene as it is, with the range of the quote",
-                          xerr=[[row["seconds"] - row["seconds_low"]], [row["seconds_high"] - row["seconds"]]],
-                          yerr=[[100*(row["error"] - row["error_low"])], [100*(row["error_high"] - row["error"])]])
-    axis.set_xlabel("time of the run [s]")
-    axis.set_ylabel("error of the worst answer [%]")
-    axis.grid(color="#dddddd", lw=0.6)
-    axis.legend(fontsize=8)
-    figure.savefig(output)
-    plt.close(figure)
-    print(output)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, help="output folder of a run")
@@ -261,15 +227,7 @@ def main():
                         "these take less than a fifth of the time")
     parser.add_argument("--deformed", type=float, default=0.0, metavar="FACTOR", help="draw displacements so many fold")
     parser.add_argument("--output", type=pathlib.Path, help="folder of the pictures; default: that of the run")
-    parser.add_argument("--price", action="store_true", help="error against time, of a folder of mud_host --price")
     options = parser.parse_args()
-    if options.price:
-        (options.output or options.folder).mkdir(parents=True, exist_ok=True)
-        try:
-            draw_price(options.folder, (options.output or options.folder) / "price.png")
-        except (OSError, KeyError, tables.TableError) as problem:
-            sys.exit(f"plot_run: {options.folder} holds no price of mud_host --price ({problem})")
-        return
     try:
         run = Run(options.folder)
     except (OSError, KeyError, IndexError) as problem:

@@ -7,7 +7,7 @@ module material_mud
    use key_schema, only: key_t, NONE
    use library_tables, only: property_count, property_index, property_name, property_range, &
                              range_for, statev_index, statev_name, statev_unit
-   use material_point, only: material_t, response_t, report_t, remark_t, NAME_LENGTH, NO_PRESET
+   use material_point, only: range_t, material_t, response_t, report_t, remark_t, NAME_LENGTH, NO_PRESET
    use retention_curves, only: saturation_t
    use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepared_statev, mud_prepare, mud_init, &
                             mud_update, &
@@ -77,9 +77,13 @@ contains
       character(*), intent(inout) :: title   !< Name of the material.
       type(fault_t), intent(inout) :: fault
       character(BUFFER) :: text
+      real(wp) :: tested(4)
       integer :: i
 
-      call read_parameters(group, law%props, title, law%doubt, fault)
+      tested = [law%tested_e%least, law%tested_e%most, law%tested_p%least, law%tested_p%most]
+      call read_parameters(group, law%props, title, law%doubt, fault, tested)
+      law%tested_e = range_t(tested(1), tested(2))
+      law%tested_p = range_t(tested(3), tested(4))
       if (fault%code /= 0) return
       law%unit = unit_of_atmosphere(law%props(property_index('p_atm')))
       allocate (law%prepared(mud_prepared_size()), source=0.0_wp)

@@ -7,10 +7,11 @@ module material_point
    use kinds, only: wp
    use retention_curves, only: retention_t, saturation_t
    use stress_units, only: stress_unit_t
+   use texts, only: short
    implicit none (type, external)
    private
    public :: material_t, material_slot_t, response_t, report_t, remark_t, state_index, swollen
-   public :: lost_pressure, PRESSURE_LOST
+   public :: lost_pressure, PRESSURE_LOST, range_t, untested
    public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
 
    integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
@@ -58,6 +59,11 @@ module material_point
       character(200) :: text = ''
    end type remark_t
 
+   !> The least and the largest of something.
+   type :: range_t
+      real(wp) :: least = -huge(1.0_wp), most = huge(1.0_wp)
+   end type range_t
+
    type, abstract :: material_t
       integer :: n_state = 0                !< State variables a point.
       logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
@@ -73,6 +79,7 @@ module material_point
       character(NAME_LENGTH), allocatable :: state_names(:), state_units(:)
       character(DOUBT_LENGTH) :: doubt = ''      !< Of its parameters, allowed and most often a mistake: a sentence.
       type(stress_unit_t) :: unit                !< Of its stresses; kPa in the comments of this module.
+      type(range_t) :: tested_e, tested_p        !< Void ratios, stresses [kPa] of the tests behind it; without: any.
       class(retention_t), allocatable :: curve   !< Of a law that has no retention of its own; without: saturated.
    contains
       procedure(initial_state_i), deferred :: initial_state
@@ -149,6 +156,34 @@ module material_point
       end function of_state_i
    end interface
 contains
+   !> What of void ratios and mean effective stresses is outside the tests behind a law; blank: nothing.
+   pure function untested(law, e, p) result(text)
+      class(material_t), intent(in) :: law
+      type(range_t), intent(in) :: e, p   !< That it is used at [-, kPa].
+      character(:), allocatable :: text
+
+      text = ''
+      if (outside(e, law%tested_e)) text = 'the void ratio is '//said(e)//', in its tests '//said(law%tested_e)
+      if (.not. outside(p, law%tested_p)) return
+      if (text /= '') text = text//'; '
+      text = text//'the mean effective stress is '//said(p)//' '//trim(law%unit%name)//', in its tests '// &
+             said(law%tested_p)
+   contains
+      pure logical function outside(used, tested)
+         type(range_t), intent(in) :: used, tested
+
+         outside = used%least < tested%least .or. used%most > tested%most
+      end function outside
+
+      pure function said(range) result(words)
+         type(range_t), intent(in) :: range
+         character(:), allocatable :: words
+
+         words = short(range%least)
+         if (range%most > range%least) words = words//' to '//short(range%most)
+      end function said
+   end function untested
+
    !> Sets the tolerance and the scheme of the stress integration, where the law has such; scheme 0 leaves it.
    subroutine no_tolerance(self, tolerance, scheme)
       class(material_t), intent(inout) :: self

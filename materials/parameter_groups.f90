@@ -19,24 +19,31 @@ module parameter_groups
    character(*), parameter :: WARNING = 'warning: '   !< The library's sentence begins with it.
    !> Keys that are not parameters.
    character(9), parameter :: TEXT_KEYS(3) = [character(9) :: 'file', 'name', 'reference']
+   !> Void ratios and stresses [unit of p_atm] of the tests behind a material: nor are these.
+   character(12), parameter :: TESTED_KEYS(4) = [character(12) :: 'tested_e_min', 'tested_e_max', 'tested_p_min', &
+                                                 'tested_p_max']
 
 contains
    !> Fills PROPS from a group. Its `file`, if any, is read first; the group's own values replace those. props has as
    !> many entries as the library, stresses in the unit of p_atm. A fault (EXIT_INPUT) names what is wrong with file and
    !> line. On a fault props(:) is of no use.
-   subroutine read_parameters(group, props, title, doubt, fault)
+   subroutine read_parameters(group, props, title, doubt, fault, tested)
       type(group_t), intent(in) :: group
       real(wp), allocatable, intent(out) :: props(:)
       character(*), intent(out) :: title   !< Name of the material.
       character(*), intent(out) :: doubt   !< What the library warns of, with its place; blank: nothing.
       type(fault_t), intent(inout) :: fault
+      real(wp), intent(inout), optional :: tested(4)   !< As TESTED_KEYS; what is not given stays.
       type(group_t), allocatable :: groups(:)
       character(:), allocatable :: path
       character(len(doubt)) :: doubt_of_file
+      real(wp) :: ranges(4)
       integer :: place
 
       title = 'defaults of the library'
       doubt = ''
+      ranges = [-huge(1.0_wp), huge(1.0_wp), -huge(1.0_wp), huge(1.0_wp)]
+      if (present(tested)) ranges = tested
       allocate (props(property_count()))
       if (mud_default_props(props, size(props)) /= 0) then
          call raise(fault, EXIT_INPUT, 'The library refuses to fill its own defaults; program and '// &
@@ -62,12 +69,13 @@ contains
             call raise(fault, EXIT_INPUT, at_line(path, groups(1)%entries(find_entry(groups(1), 'file'))%line)// &
                        'a material file cannot name another file; copy the values instead.')
          else
-            call apply_group(groups(1), props, title, doubt, fault)
+            call apply_group(groups(1), props, title, doubt, ranges, fault)
          end if
          if (fault%code /= 0) return
       end if
       doubt_of_file = doubt
-      call apply_group(group, props, title, doubt, fault)
+      call apply_group(group, props, title, doubt, ranges, fault)
+      if (present(tested)) tested = ranges
       if (place > 0 .and. .not. has_parameters(group)) doubt = doubt_of_file
    end subroutine read_parameters
 
@@ -78,7 +86,8 @@ contains
 
       has = .false.
       do i = 1, group%count
-         has = has .or. all(TEXT_KEYS /= lower_case(group%entries(i)%key))
+         has = has .or. .not. (any(TEXT_KEYS == lower_case(group%entries(i)%key)) .or. &
+                               any(TESTED_KEYS == lower_case(group%entries(i)%key)))
       end do
    end function has_parameters
 
@@ -90,11 +99,12 @@ contains
       folder = file(:index(file, '/', back=.true.))
    end function folder_of
 
-   subroutine apply_group(group, props, title, doubt, fault)
+   subroutine apply_group(group, props, title, doubt, tested, fault)
       type(group_t), intent(in) :: group
       real(wp), intent(inout) :: props(:)
       character(*), intent(inout) :: title
       character(*), intent(out) :: doubt
+      real(wp), intent(inout) :: tested(4)
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: sentence
       character(BUFFER) :: text
@@ -111,12 +121,20 @@ contains
                else if (lower_case(item%key) == 'name') then
                   title = item%values(1)
                end if
+            else if (any(TESTED_KEYS == lower_case(item%key))) then
+               call set_tested(group%file, item, tested, fault)
             else
                call set_property(group%file, item, props, fault)
             end if
          end associate
          if (fault%code /= 0) return
       end do
+
+      if (tested(1) > tested(2) .or. tested(3) > tested(4)) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'tested_e_min and tested_p_min are at most '// &
+                    'tested_e_max and tested_p_max.')
+         return
+      end if
 
       ! the unit of the limits is known when p_atm is, which may stand behind them
       do i = 1, group%count
@@ -142,6 +160,22 @@ contains
          call raise(fault, EXIT_INPUT, at_line(group%file, line)//sentence)
       end if
    end subroutine apply_group
+
+   subroutine set_tested(file, item, tested, fault)
+      character(*), intent(in) :: file
+      type(entry_t), intent(in) :: item
+      real(wp), intent(inout) :: tested(4)
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: value
+      logical :: good
+
+      good = item%count == 1
+      if (good) call read_number(item%values(1), value, good)
+      if (good) good = value >= 0.0_wp
+      if (good) tested(findloc(TESTED_KEYS, lower_case(item%key), dim=1)) = value
+      if (.not. good) call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(item%key)//' is one number of 0 '// &
+                                 'or more: the range of void ratio [-] or stress of the tests behind the material.')
+   end subroutine set_tested
 
    subroutine set_property(file, item, props, fault)
       character(*), intent(in) :: file

@@ -44,13 +44,13 @@ SATURATED = [("= 'u-p_w-p_c'", "= 'u-p_w'"),
              ("   field = 'p_w'\n   value = -30", "   field = 'p_w'"),
              ("&fix\n   group = 'top_2'\n   field = 'p_c'\n   value = 30\n/\n",
               "&load\n   group = 'top'\n   kind = 'pressure'\n   value = 0.5\n/\n")]
-COLUMN = """&scene name = 'column' geometry = 'plane_strain' effects = 'auto' gravity = 0 /
+COLUMN = """&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w' without = 'inertia' /
 &mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 10 /
 &elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
 &permeability name = 'k' intrinsic = 1.0e-10 law = 'constant' /
 &region material = 'soil' void_ratio = 0.8 permeability = 'k' /
 &history name = 'h' times = 0, 0.05 values = 0, 1 /
-&stage name = 'load' tolerance = 1.0e-8 duration = 0.1 dt = 0.002 /
+&stage name = 'load' analysis = 'dynamic' tolerance = 1.0e-8 duration = 0.1 dt = 0.002 /
 &fix group = 'left' field = 'u_r' /
 &fix group = 'right' field = 'u_r' /
 &fix group = 'bottom' field = 'u_z' /
@@ -89,7 +89,7 @@ CASES = {
     "contact_steel": (CONTACT + "steel.nml", [("duration = 0.04", "duration = 0.01")]),
     "contact_bar": (CONTACT + "bar.nml", [("duration = 1.5e-3", "duration = 1.0e-4")]),
     "restart": ("tests/host/scenes/restart.nml", [RULE]),
-    "effects": (COLUMN, []),
+    "without": (COLUMN, []),
 }
 
 

@@ -4,7 +4,7 @@ program mud_triax
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use kinds, only: wp
-   use material_point, only: PRESSURE_LOST
+   use material_point, only: PRESSURE_LOST, range_t, untested
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use triax_accuracy, only: accuracy_t, reach_accuracy, verify_accuracy, note_accuracy, accuracy_lines, is_met, &
                              LINE_LENGTH
@@ -12,7 +12,7 @@ program mud_triax
    use library_tables, only: library_version
    use material_folder, only: material_path
    use texts, only: short
-   use triax_point, only: point_t
+   use triax_point, only: point_t, void_ratio, mean_stress
    use triax_control, only: tally_t
    use triax_output, only: table_t, open_table
    use triax_progress, only: timer_t, start_timer, show_summary
@@ -52,6 +52,19 @@ program mud_triax
    end if
 
 contains
+   !> That a case begins outside what its material was fitted to.
+   subroutine warn_of_use(test)
+      type(case_t), intent(in) :: test
+      character(:), allocatable :: text
+      real(wp) :: e, p
+
+      e = void_ratio(test%soil, test%start)
+      p = mean_stress(test%start)
+      text = untested(test%soil%law, range_t(e, e), range_t(p, p))
+      if (text /= '') write (error_unit, '(a)') 'mud_triax: warning: the material '''//trim(test%material)// &
+         ''' begins outside what it was fitted to: '//text//'.'
+   end subroutine warn_of_use
+
    subroutine run(file)
       character(*), intent(in) :: file
       type(case_t) :: test
@@ -70,6 +83,7 @@ contains
                                           test, fault)
       if (fault%code /= 0) return
       if (test%soil%law%doubt /= '') write (error_unit, '(a)') 'mud_triax: warning: '//trim(test%soil%law%doubt)
+      call warn_of_use(test)
       quiet = option_given(options, '--quiet')
       output_file = option_value(options, '--output')
       if (output_file == '') output_file = trim(test%name)//'.csv'

@@ -39,11 +39,10 @@ contains
    end function graded_axis
 
    !> Mesh of a rectangle from breaks [m], cells between two breaks and the ratio of neighbouring cells, along r and z.
-   !> Extents as of graded_axis. Several pieces of one number share their groups.
-   subroutine graded_mesh(r_breaks, r_cells, r_ratio, r_number, z_breaks, z_cells, z_ratio, z_number, mesh)
+   !> Extents as of graded_axis.
+   subroutine graded_mesh(r_breaks, r_cells, r_ratio, z_breaks, z_cells, z_ratio, mesh)
       real(wp), intent(in) :: r_breaks(:), r_ratio(:), z_breaks(:), z_ratio(:)
       integer, intent(in) :: r_cells(:), z_cells(:)     !< (pieces along r, along z)
-      integer, intent(in) :: r_number(:), z_number(:)   !< Of each piece in the names of groups, ascending from 1.
       type(mesh_t), intent(out) :: mesh
       real(wp), allocatable :: r(:), z(:)
       integer, allocatable :: r_piece(:), z_piece(:)
@@ -53,8 +52,8 @@ contains
       z = graded_axis(z_breaks, z_cells, z_ratio)
       nr = size(r) - 1
       nz = size(z) - 1
-      r_piece = [((r_number(i), k=1, r_cells(i)), i=1, size(r_cells))]
-      z_piece = [((z_number(i), k=1, z_cells(i)), i=1, size(z_cells))]
+      r_piece = [((i, k=1, r_cells(i)), i=1, size(r_cells))]
+      z_piece = [((i, k=1, z_cells(i)), i=1, size(z_cells))]
       allocate (mesh%x(2, (2*nr + 1)*(2*nz + 1)), mesh%t6(6, 2*nr*nz))
       do j = 0, 2*nz
          do i = 0, 2*nr
@@ -110,8 +109,8 @@ contains
 
          cell = [(c, c=1, 2*nr*nz)]
          call add_group(mesh, 'all', cell, none, [integer ::])
-         do q = 1, maxval(z_number)
-            do p = 1, maxval(r_number)
+         do q = 1, size(z_cells)
+            do p = 1, size(r_cells)
                inside = [(r_piece(mod((c - 1)/2, nr) + 1) == p .and. z_piece((c - 1)/2/nr + 1) == q, c=1, 2*nr*nz)]
                write (name, '(a,i0,a,i0)') 'block_', p, '_', q
                call add_group(mesh, trim(name), pack(cell, inside), none, [integer ::])

@@ -7,6 +7,8 @@ module vertical_lines
    private
    public :: strips_t, new_strips, pieces_above
 
+   real(wp), parameter :: ROUNDED = 1.0e-12_wp   !< Of the length of a line.
+
    !> Triangles of a mesh by vertical strips of one width, so that a line looks at few of them.
    type :: strips_t
       real(wp) :: left = 0.0_wp, width = 1.0_wp   !< [m]
@@ -53,17 +55,17 @@ contains
 
    !> Pieces of the line from a point upwards to a height, or, where that is none, to the top of what it passes: ends
    !> [m], and the triangle of every piece, 0 where there is none.
-   pure subroutine pieces_above(mesh, strips, x, height, ends, element)
+   subroutine pieces_above(mesh, strips, x, height, ends, element)
       type(mesh_t), intent(in) :: mesh
       type(strips_t), intent(in) :: strips
       real(wp), intent(in) :: x(2)   !< [m]
       real(wp), intent(in), optional :: height   !< [m]
       real(wp), allocatable, intent(out) :: ends(:)   !< (pieces + 1) From the point on.
       integer, allocatable, intent(out) :: element(:)   !< (pieces)
+      real(wp) :: z(2), top, at, rounding
       real(wp), allocatable :: span(:, :)
       integer, allocatable :: passed(:)
-      real(wp) :: z(2), top, middle
-      integer :: i, k, n
+      integer :: i, j, n, pieces
 
       associate (k => strip_at(strips, size(strips%first) - 1, x(1)))
          allocate (span(2, strips%first(k + 1) - strips%first(k)), passed(strips%first(k + 1) - strips%first(k)))
@@ -74,33 +76,51 @@ contains
                z = heights_at(corners, x(1))
             end associate
             if (z(2) <= x(2)) cycle
+            ! By their lower ends; triangles mostly come in that order.
+            j = n
+            do while (j > 0)
+               if (span(1, j) <= z(1)) exit
+               span(:, j + 1) = span(:, j)
+               passed(j + 1) = passed(j)
+               j = j - 1
+            end do
+            span(:, j + 1) = z
+            passed(j + 1) = strips%elements(i)
             n = n + 1
-            span(:, n) = z
-            passed(n) = strips%elements(i)
          end do
       end associate
       top = x(2)
       if (n > 0) top = max(top, maxval(span(2, :n)))
       if (present(height)) top = height
-      ends = [x(2)]
-      do
-         ! The next end of a triangle on the way, or the top.
-         middle = top
-         do i = 1, n
-            do k = 1, 2
-               if (span(k, i) > ends(size(ends)) .and. span(k, i) < middle) middle = span(k, i)
-            end do
-         end do
-         ends = [ends, middle]
-         if (.not. middle < top) exit
+      rounding = ROUNDED*abs(top - x(2))
+      allocate (ends(2*n + 2), element(2*n + 1))
+      at = x(2)
+      ends(1) = at
+      pieces = 0
+      do i = 1, n
+         if (at >= top - rounding) exit
+         if (min(span(2, i), top) <= at + rounding) cycle
+         if (span(1, i) > at + rounding) call add(min(span(1, i), top), 0)
+         if (span(1, i) < top) call add(min(span(2, i), top), passed(i))
       end do
-      allocate (element(size(ends) - 1), source=0)
-      do i = 1, size(element)
-         middle = 0.5_wp*(ends(i) + ends(i + 1))
-         do k = 1, n
-            if (span(1, k) <= middle .and. span(2, k) >= middle) element(i) = passed(k)
-         end do
-      end do
+      ! To the very top: what is left is without triangle, but for rounding.
+      if (pieces == 0 .or. abs(top - at) > rounding) then
+         call add(top, 0)
+      else
+         ends(pieces + 1) = top
+      end if
+      ends = ends(:pieces + 1)
+      element = element(:pieces)
+   contains
+      subroutine add(until, triangle)
+         real(wp), intent(in) :: until
+         integer, intent(in) :: triangle
+
+         pieces = pieces + 1
+         ends(pieces + 1) = until
+         element(pieces) = triangle
+         at = until
+      end subroutine add
    end subroutine pieces_above
 
    !> Lowest and highest point of a triangle on a vertical line that meets it [m].

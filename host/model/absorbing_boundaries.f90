@@ -15,7 +15,7 @@ module absorbing_boundaries
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: state_t, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_types, only: place_of, acts_in, stage_t, absorber_t
-   use staged_ground, only: facing_edges
+   use staged_ground, only: facing_edges, dynamic_stages
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -58,7 +58,7 @@ contains
       allocate (one%held(model%dofs%n), source=.false.)
       allocate (one%incoming(model%dofs%n), source=0.0_wp)
       one%amplitude = absorber%amplitude
-      edges = facing_edges(model, absorber%group, absorber%stages)
+      edges = facing_edges(model, absorber%group, dynamic_stages(model, absorber%stages))
       do e = 1, size(edges, 2)
          call ground_behind(model, absorber, edges(:, e), state, ground, fault)
          if (fault%code /= 0) return

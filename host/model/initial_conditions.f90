@@ -8,7 +8,7 @@ module initial_conditions
    use given_pressures, only: pressures_at_start, water, suction
    use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY, is_present
    use material_mud, only: mud_t
-   use material_point, only: material_t
+   use material_point, only: material_t, range_t
    use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
    use texts, only: short, whole
@@ -18,9 +18,15 @@ module initial_conditions
    use vertical_lines, only: strips_t, new_strips, pieces_above
    implicit none (type, external)
    private
-   public :: initial_state, tension_t, balance_t
+   public :: initial_state, tension_t, balance_t, use_t
 
    integer, parameter :: OF_COLUMN = 400   !< Slices of a column, for its weight: relative error 1/(24 of the square).
+
+   !> Where the points of a region begin, beside the tests behind their law.
+   type :: use_t
+      integer :: points = 0, outside_e = 0, outside_p = 0   !< Points; outside in void ratio, in mean effective stress.
+      type(range_t) :: e = range_t(huge(1.0_wp), -huge(1.0_wp)), p = range_t(huge(1.0_wp), -huge(1.0_wp))
+   end type use_t
 
    !> Points of MUD with a tensile component of the effective stress that the scene prescribes, or with no stress.
    type :: tension_t
@@ -28,6 +34,7 @@ module initial_conditions
       integer :: bare = 0            !< Points without effective stress: sand has no stiffness there.
       real(wp) :: largest = 0.0_wp   !< [kPa]
       real(wp) :: z = 0.0_wp         !< Where it is [m].
+      type(use_t), allocatable :: uses(:)   !< (regions)
    end type tension_t
 
    !> The largest stress that nothing balances at the start (start_balance).
@@ -60,6 +67,7 @@ contains
       real(wp) :: p_c, pressures(2)
       integer :: e, g, p, i, n
 
+      if (present(tension)) allocate (tension%uses(size(model%domain%regions)))
       state = new_state_of(model%domain)
       state%gravity = gravity_at(model, state%time)
       if (is_staged(model)) then
@@ -110,6 +118,8 @@ contains
                   if (text == '') then
                      state%e(p) = region%law%void_ratio(own)
                      if (region%with_c) state%s(p) = region%law%saturation(own)
+                     if (present(tension)) call note_use(region%law, state%e(p), -sum(state%stress(1:3, p))/3, &
+                                                         tension%uses(model%domain%region_of(e)))
                      cycle
                   end if
                end associate
@@ -120,6 +130,18 @@ contains
          end associate
       end do
    end subroutine initial_state
+
+   pure subroutine note_use(law, e, p, use_of_law)
+      class(material_t), intent(in) :: law
+      real(wp), intent(in) :: e, p   !< [-], [kPa]
+      type(use_t), intent(inout) :: use_of_law
+
+      use_of_law%points = use_of_law%points + 1
+      if (e < law%tested_e%least .or. e > law%tested_e%most) use_of_law%outside_e = use_of_law%outside_e + 1
+      if (p < law%tested_p%least .or. p > law%tested_p%most) use_of_law%outside_p = use_of_law%outside_p + 1
+      use_of_law%e = range_t(min(use_of_law%e%least, e), max(use_of_law%e%most, e))
+      use_of_law%p = range_t(min(use_of_law%p%least, p), max(use_of_law%p%most, p))
+   end subroutine note_use
 
    pure subroutine note_tension(law, stress, z, tension)
       class(material_t), intent(in) :: law

@@ -51,8 +51,7 @@ contains
             call raise(fault, EXIT_MESH, place_of(scene)//'r_cells, z_cells: '//short(elements)//' elements; '// &
                        'at most '//short(MOST_ELEMENTS)//'.')
          else
-            call graded_mesh(r, scene%r_cells, scene%r_ratio, scene%r_number, z, scene%z_cells, scene%z_ratio, &
-                             scene%z_number, mesh)
+            call graded_mesh(r, scene%r_cells, scene%r_ratio, z, scene%z_cells, scene%z_ratio, mesh)
          end if
       end associate
    end subroutine build_mesh

@@ -9,6 +9,7 @@ module scene_warnings
    use initial_conditions, only: tension_t, balance_t
    use key_schema, only: line_of, given, get_number
    use material_elastic, only: elastic_t
+   use material_point, only: untested
    use mesh_look, only: look_at_slits
    use model_types, only: model_t
    use namelists, only: group_t
@@ -26,6 +27,7 @@ module scene_warnings
    real(wp), parameter :: LARGE_FILE = 100.0_wp       !< [m] Of a mesh from a file, which may well be drawn in mm.
    real(wp), parameter :: PERMEABLE = 1.0e-8_wp       !< [m2] Coarse gravel; above it a conductivity [m/s] is likely.
    real(wp), parameter :: ATMOSPHERE = 101.325_wp     !< [kPa]
+   real(wp), parameter :: FEW = 0.1_wp                !< Share of the points of a region.
    real(wp), parameter :: STIFF = 1.0e9_wp            !< [kPa] Five times steel; above it a modulus in Pa is likely.
 
    !> Values of fluids and grains that suggest another unit: below `lower`, or above `upper` and below `beyond`.
@@ -63,6 +65,7 @@ contains
       call look_at_units(scene, warnings)
       call look_at_regions(scene, model, warnings)
       call look_at_materials(scene, model, warnings)
+      call look_at_uses(scene, model, tension, warnings)
       call look_at_initials(model, tension, warnings)
       call list_start_warnings(model, balance, warnings)
       call list_boundary_warnings(model, warnings)
@@ -174,6 +177,24 @@ contains
          end associate
       end do
    end subroutine look_at_materials
+
+   !> Laws that are used outside the tests behind them. A few points at low stress, as below a surface, are none.
+   subroutine look_at_uses(scene, model, tension, warnings)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(in) :: model
+      type(tension_t), intent(in) :: tension
+      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
+      integer :: i
+
+      do i = 1, size(tension%uses)
+         associate (used => tension%uses(i), law => model%domain%regions(i)%law)
+            if (used%outside_e == 0 .and. used%outside_p <= FEW*used%points) cycle
+            call add_warning(place_of(scene%regions(i))//'material '''//trim(scene%regions(i)%material_name)// &
+               ''' begins outside what it was fitted to at '//whole(max(used%outside_e, used%outside_p))//' of '// &
+               whole(used%points)//' points: '//untested(law, used%e, used%p)//'.', warnings)
+         end associate
+      end do
+   end subroutine look_at_uses
 
    !> Largest side of the box around the elements [m].
    pure real(wp) function extent(mesh)

@@ -4,12 +4,13 @@
 module staged_ground
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise, EXIT_INPUT
+   use generalised_alpha, only: DYNAMIC
    use model_types, only: model_t
-   use scene_types, only: acts_in, place_of, scene_item_t, LOAD_PRESSURE, LOAD_RAIN
+   use scene_types, only: acts_in, place_of, scene_item_t, NAME_LENGTH, LOAD_PRESSURE, LOAD_RAIN
    use texts, only: short
    implicit none (type, external)
    private
-   public :: is_staged, ground_of, facing_edges, check_sides, check_staged_ground
+   public :: is_staged, ground_of, facing_edges, dynamic_stages, check_sides, check_staged_ground
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -56,6 +57,19 @@ contains
          if (sides(k) == ON_RIGHT) edges(1:2, k) = edges([2, 1], k)
       end do
    end function facing_edges
+
+   !> The dynamic ones of some stages: in others no absorbing boundary acts.
+   pure function dynamic_stages(model, stages) result(names)
+      type(model_t), intent(in) :: model
+      character(*), intent(in) :: stages(:)   !< None: all.
+      character(NAME_LENGTH), allocatable :: names(:)
+      logical :: wanted(size(model%stages))
+      integer :: s
+
+      wanted = [(model%stages(s)%kind == DYNAMIC .and. acts_in(stages, model%stages(s)%name), s=1, size(wanted))]
+      allocate (names(count(wanted)))
+      names = pack(model%stages%name, wanted)
+   end function dynamic_stages
 
    !> On which sides of the edges of a group a stage has ground. (edges)
    pure function sides_with_ground(model, group, number) result(sides)
@@ -115,7 +129,7 @@ contains
       end do
       do i = 1, size(model%absorbers)
          associate (absorber => model%absorbers(i))
-            call look(absorber%scene_item_t, '&absorbing', absorber%stages, absorber%group)
+            call look(absorber%scene_item_t, '&absorbing', dynamic_stages(model, absorber%stages), absorber%group)
          end associate
       end do
    contains
@@ -130,6 +144,7 @@ contains
          integer :: s, first, k
 
          if (fault%code /= 0) return
+         if (what == '&absorbing' .and. size(stages) == 0) return
          first = 0
          do s = 1, size(model%stages)
             if (.not. acts_in(stages, model%stages(s)%name)) cycle

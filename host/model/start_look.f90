@@ -261,7 +261,9 @@ contains
       forces = plate%force
       if (plate%amplitude > 0) forces = plate%force*[minval(model%amplitudes(plate%amplitude)%values), &
                                                      maxval(model%amplitudes(plate%amplitude)%values)]
-      if (maxval(abs(forces)) > HARD*area) call add_warning(place_of(plate)//'the force of the plate '''// &
+      ! A boundary along z has no area that a vertical force could press on.
+      if (area > 0.0_wp .and. maxval(abs(forces)) > HARD*area) call add_warning(place_of(plate)// &
+         'the force of the plate '''// &
          trim(plate%name)//''' is '//short(maxval(abs(forces))/area)//' kPa on its '//short(area)//' m2; forces '// &
          'are in kN.', warnings)
       if (minval(forces) < 0.0_wp .or. (plate%heavy .and. model%domain%gravity > 0.0_wp)) return

@@ -8,7 +8,7 @@ module folder_lock
    use texts, only: from_c, whole
    implicit none (type, external)
    private
-   public :: lock_folder, unlock_folder, LOCK
+   public :: lock_folder, unlock_folder
 
    character(*), parameter :: LOCK = 'running'
    integer, parameter :: ATTEMPTS = 2   !< The second after the file of a dead process is removed.

@@ -24,7 +24,7 @@ module output_tables
    private
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields, &
              write_points, hand_over_tables
-   public :: write_contact_nodes, write_reactions, close_reactions, reactions_of, close_tables, flush_tables
+   public :: write_contact_nodes, write_reactions, close_reactions, close_tables, flush_tables
 
    character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
       's_rr', 's_zz', 's_tt', 's_rz', 'e', 'S_w']

@@ -14,7 +14,7 @@ module run_summary
    use warnings, only: repeat_warnings
    implicit none (type, external)
    private
-   public :: peaks_t, new_peaks, note_peaks, print_summary, with_unit, counted
+   public :: peaks_t, new_peaks, note_peaks, print_summary, counted
 
    integer, parameter :: DIGITS_SAID = 3   !< Of a value; of a time as many as tell it from that of the step before.
 

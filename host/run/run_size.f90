@@ -8,7 +8,7 @@ module run_size
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: size_of_run, memory_of
+   public :: size_of_run
 
    real(wp), parameter :: MEGABYTE = 1.0e6_wp, OF_A_NUMBER = 8.0_wp   !< [bytes]
 contains
@@ -31,15 +31,6 @@ contains
       if (run%system%sparse%entries > 0.0_wp) text = text//', its factors '//megabytes(run%system%sparse%entries)
       text = text//'.'
    end function size_of_run
-
-   !> The same as numbers: lists over points, elements and unknowns; factors. [MB]
-   pure function memory_of(run) result(megabytes)
-      type(run_t), intent(in) :: run
-      real(wp) :: megabytes(2)
-
-      megabytes(1) = OF_A_NUMBER/MEGABYTE*(of_points(run) + size(run%assembly%k) + size(run%pattern%col))
-      megabytes(2) = OF_A_NUMBER/MEGABYTE*run%system%sparse%entries
-   end function memory_of
 
    !> Numbers of the state of all points, before and after the step.
    pure real(wp) function of_points(run)

@@ -143,8 +143,8 @@ contains
       end if
    end function next_step
 
-   !> Changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa]. docs/theory/host.md section
-   !> 5.1.
+   !> Changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa]. docs/theory/host.md
+   !> section 5.1.
    pure function negligible_changes(stage, run) result(changes)
       type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run

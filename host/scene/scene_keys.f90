@@ -152,7 +152,6 @@ contains
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
       character(*), parameter :: RATIO = 'size of a cell over that of the previous one; default 1'
-      integer :: i
 
       associate (mesh => scene%mesh)
          mesh%scene_item_t = item_of(k%group)
@@ -173,8 +172,6 @@ contains
             mesh%mesh_file = k%group%file(:index(k%group%file, '/', back=.true.))//mesh%mesh_file
          if (size(mesh%r_ratio) == 0) mesh%r_ratio = spread(ONE, 1, size(mesh%r_cells))
          if (size(mesh%z_ratio) == 0) mesh%z_ratio = spread(ONE, 1, size(mesh%z_cells))
-         mesh%r_number = [(i, i=1, size(mesh%r_cells))]
-         mesh%z_number = [(i, i=1, size(mesh%z_cells))]
       end associate
    end subroutine take_mesh
 

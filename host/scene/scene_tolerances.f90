@@ -11,7 +11,7 @@ module scene_tolerances
    private
    public :: ask_key, ask_steps, ask_stress
 
-   real(wp), parameter :: DEFAULT_TOLERANCE = 1.0e-2_wp  !< Of stages without dt in scenes that give none.
+   real(wp), parameter :: DEFAULT_TOLERANCE = 1.0e-3_wp  !< Of stages without dt in scenes that give none.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the steps'.
    real(wp), parameter :: NEWTON_LARGEST = 1.0e-4_wp     !< Its bound: the residuals of all steps add up.
    real(wp), parameter :: STRESS_SHARE = 0.1_wp          !< Tolerance of MUD's stress integration, likewise.

@@ -50,7 +50,6 @@ module scene_types
       logical :: scale_given = .false.
       real(wp), allocatable :: r(:), z(:), r_ratio(:), z_ratio(:)
       integer, allocatable :: r_cells(:), z_cells(:)
-      integer, allocatable :: r_number(:), z_number(:)   !< Of each piece in the names of its groups.
       real(wp) :: fineness = -1.0_wp                !< Times the cells along each axis.
       integer :: splits = 0                         !< How often every triangle of a file is split into four.
    end type scene_mesh_t

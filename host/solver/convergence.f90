@@ -114,11 +114,11 @@ contains
       end select
    end function good_enough
 
-   !> Whether what further corrections would change of a pressure is hidden by the errors of the steps, as integrators of
-   !> differential equations judge their iterations (Hairer & Wanner 1996, section IV.8): corrections that fall by a share
-   !> s each add up to s/(1 - s) of the last one. Where air vanishes from pores, or comes back, the balance of air has a
-   !> double root: corrections halve, and its forces vanish with it, so that the residual is never small beside them. It
-   !> has to be small beside the water's: in dry soil large pressures hide changes that move much water.
+   !> Whether what further corrections would change of a pressure is hidden by the errors of the steps, as integrators
+   !> of differential equations judge their iterations (Hairer & Wanner 1996, section IV.8): corrections that fall by a
+   !> share s each add up to s/(1 - s) of the last one. Where air vanishes from pores, or comes back, the balance of air
+   !> has a double root: corrections halve, and its forces vanish with it, so that the residual is never small beside
+   !> them. It has to be small beside the water's: in dry soil large pressures hide changes that move much water.
    !> docs/theory/host.md section 5.1.
    pure function hidden(control, log)
       type(control_t), intent(in) :: control
@@ -273,8 +273,8 @@ contains
       if (counts .and. dofs%field(i) == AT_P_C) counts = .not. constraint%air(dofs%node(i))
    end function counts
 
-   !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its worst
-   !> unknown, the forces.
+   !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its
+   !> worst unknown, the forces.
    pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint

@@ -6,7 +6,7 @@ module step_control
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: controller_t, new_controller, judge, REJECTED_ABOVE, LARGEST_FACTOR, MOST_REJECTIONS
+   public :: controller_t, new_controller, judge, LARGEST_FACTOR
 
    real(wp), parameter :: REJECTED_ABOVE = 1.2_wp   !< Ratio of error to allowance beyond which a step is repeated.
    real(wp), parameter :: LARGEST_FACTOR = 2.0_wp, SMALLEST_FACTOR = 0.2_wp

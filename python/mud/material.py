@@ -114,6 +114,16 @@ def material_file(name: str | os.PathLike) -> pathlib.Path:
     )
 
 
+#: Keys of a material file that are no parameters: void ratios and stresses of the tests behind it.
+TESTED = ("tested_e_min", "tested_e_max", "tested_p_min", "tested_p_max")
+
+
+def _tested(path: pathlib.Path, name: str, value: float | str) -> float:
+    if isinstance(value, str) or not value >= 0:
+        raise InputError(f"{path}: {name} = {value!r} is not one number of 0 or more")
+    return value
+
+
 class Material(Points, Mapping):
     """Parameters of MUD by name; those not given have the library's default.
 
@@ -128,17 +138,20 @@ class Material(Points, Mapping):
     unknown parameter.
     """
 
-    _OWN = ("props", "title", "_storage", "_address", "_unused")
+    _OWN = ("props", "title", "tested", "_storage", "_address", "_unused")
 
     def __init__(self, source: str | os.PathLike | None = None, /, **values: float | str):
         self.props = np.empty(len(parameters))  #: (n_parameters,) PROPS
         self.title = "defaults of the library"
+        #: range of the tests behind the material, tested_e_min to tested_p_max [-, unit of p_atm], if its file has it
+        self.tested: dict[str, float] = {}
         _native.mud.mud_default_props(self.props.ctypes.data, len(self.props))
         if source is not None:
             path = material_file(source)
             entries = namelist.read_material(path)
             self.title = str(entries.pop("name", path.stem))
             entries.pop("reference", None)
+            self.tested = {name: _tested(path, name, entries.pop(name)) for name in TESTED if name in entries}
             self._set(entries)
         self._set(values)
         self.props.flags.writeable = False
@@ -203,12 +216,13 @@ class Material(Points, Mapping):
     def changed(self, **values: float | str) -> Material:
         """The same material with other values of some parameters."""
         other = Material(**{**dict(self.items()), **values})
-        other.title = self.title
+        other.title, other.tested = self.title, dict(self.tested)
         return other
 
     def group(self) -> str:
         """The material as a ``&material`` group of a case file: every parameter that is not the default."""
-        lines = [f"   {name} = {value!r}" for name, value in self.items() if value != parameters[name].default]
+        lines = [f"   {name} = {value!r}" for name, value in self.tested.items()]
+        lines += [f"   {name} = {value!r}" for name, value in self.items() if value != parameters[name].default]
         return "\n".join(["&material", f"   name = {namelist.quoted(self.title, namelist.LONGEST)}", *lines, "/", ""])
 
     def converted(self, factor: float) -> Material:
@@ -219,6 +233,7 @@ class Material(Points, Mapping):
             raise fault_of(code)
         other = Material(**dict(zip(parameters, props)))
         other.title = self.title
+        other.tested = {name: value * (factor if "_p_" in name else 1) for name, value in self.tested.items()}
         return other
 
     def initial_state(

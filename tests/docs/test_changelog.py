@@ -40,6 +40,10 @@ def scene(text):
     return said("host/mud_host", "old.nml", SCENE + text, "--check")
 
 
+def keyed(key):
+    return said("host/mud_host", "old.nml", SCENE.replace("name = 'old'", f"name = 'old' {key}") + ELASTIC, "--check")
+
+
 def case(material):
     return said("drivers/mud_triax", "case.nml", f"&material {material} /\n&initial p_eff = 100 void_ratio = 0.8 /\n"
                 "&stage control = 'drained' eps_a_end = 0.01 increment = 1e-3 output_interval = 1e-3 /\n", "--quiet")
@@ -99,6 +103,10 @@ def test_changelog_md_has_rows_that_promise_a_refusal():
         "`memory_rule` 4 `as_published`": (lambda: case("memory_rule = 4"), ["memory_rule", "from 0 to 3"]),
         "with `hysteresis` = 1 S_w forgot where suction had turned":
             (short_state, ["-2", str(PLAIN), str(WITH_HYSTERESIS)]),
+        "`mesh = 'auto'`, `budget`": (lambda: keyed("mesh = 'auto'") + keyed("budget = 9"),
+                                      ["mesh is no key", "budget is no key", "mud_study accuracy"]),
+        "`effects = 'auto'`, `effects_*`": (lambda: keyed("effects = 'auto'") + keyed("effects_tolerance = 0.1"),
+                                            ["effects is no key", "effects_tolerance is no key", "mud_study effects"]),
         "PROPS 45 entries": (short_props, ["-1", "45", str(FEWEST)]),
         "a `&retention` of its own": (lambda: scene(MUD.format("", "retention = 'r'") + RETENTION),
                                       ["retention = 'material'"]),

@@ -175,3 +175,23 @@ def test_p_below_zero_is_told_times():
         check(f"{what}, p' below zero is told {said} times", done.returncode == 0 and
               done.stderr.count("the mean effective stress p' fell to -") == said == done.stderr.count("warning"),
               done.stderr)
+
+
+def test_a_case_outside_the_tests_of_its_material_is_told():
+    # The ranges of a fitted material are data of its file: e 0.693 to 1.005, p' 12 to 859 kPa.
+    for name, p, e, words in (("inside", 100, 0.8, ()),
+                              ("dense", 100, 0.65, ("void ratio is 0.65, in its tests 0.693",)),
+                              ("deep", 900, 0.8, ("mean effective stress is 900 kPa, in its tests 12 to 859",)),
+                              ("both", 5, 1.02, ("void ratio is 1.02", "stress is 5 kPa"))):
+        (work / f"{name}.nml").write_text(
+            f"&material file = '{root}/drivers/materials/karlsruhe.nml' /\n&initial p_eff = {p} void_ratio = {e} /\n"
+            "&stage control = 'drained' eps_a_end = 0.002 increment = 1e-3 output_interval = 1e-3 /\n")
+        done = call(work / f"{name}.nml", "--output", work / f"{name}.csv", "--quiet")
+        told = [line for line in done.stderr.splitlines() if "fitted to" in line]
+        check(f"{name}", done.returncode == 0 and len(told) == bool(words) and all(w in told[0] for w in words),
+              done.stderr)
+    (work / "none.nml").write_text("&material tested_e_min = 'loose' /\n&initial p_eff = 100 void_ratio = 0.8 /\n"
+                                   "&stage control = 'drained' eps_a_end = 0.01 increment = 1e-3 /\n")
+    done = call(work / "none.nml")
+    check("a range that is no number is refused", done.returncode != 0 and "tested_e_min is one number" in done.stderr,
+          done.stderr)

@@ -222,7 +222,7 @@ def test_pressures_are_linear_unless_a_scene_asks_for_quadratic_ones():
 
 
 # A plate of 0.3 m on sand with water 0.15 m below its surface, half an hour of rain, then half a pulse.
-WET = """&scene name = 'wet' fields = 'u-p_w-p_c' gravity = 9.81 /
+WET = """&scene name = 'wet' fields = 'u-p_w-p_c' gravity = 9.81 step_tolerance = 1e-2 /
 &mesh r = 0, 0.15, 1 r_cells = 2, 3 r_ratio = 1, 1.5 z = -1, -0.3, 0 z_cells = 2, 4 z_ratio = 0.76, 0.9 /
 &mud name = 'sand' file = '{root}/drivers/materials/toyoura.nml' /
 &permeability name = 'k' intrinsic = 1e-11 /

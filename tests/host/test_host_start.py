@@ -79,7 +79,7 @@ def test_ground_that_is_not_there_does_not_weigh():
 def test_what_is_told_of_a_start_that_is_not_in_balance():
     for what, pairs, words in (
             ("a surface 1 m too high", [("surface = 0", "surface = 1")], ["20 kPa away", "Stage rest begins"]),
-            ("a surcharge without its load", [("value = 2", "value = 0")], ["2 kPa away", "(0", ", 0) m"]),
+            ("a surcharge without its load", [("value = 2", "value = 0")], ["2 kPa away", ", 0) m"]),
             ("a load that is more than the surcharge", [("value = 2", "value = 5")], []),
             ("a load that grows from the surcharge", [("value = 2", "value = 2 history = 'h'"),
              ("&point", "&history name = 'h' times = 0, 1 values = 1, 9 /\n&point")], None)):

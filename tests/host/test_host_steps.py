@@ -216,16 +216,18 @@ def test_given_steps_stay():
     check("given steps stay", (work / "hand/ledger.csv").read_bytes() == (work / "plain/ledger.csv").read_bytes()
     )
 
-    # Without dt a stage is controlled, and without a tolerance at 1e-2: six decades of time in few steps.
+    # Without dt a stage is controlled, and without a tolerance at 1e-3: six decades of time in few steps.
     free = TERZAGHI.read_text().replace("   dt = 1.0e-3\n   dt_growth = 1.03\n   dt_max = 1\n", "")
     done = run(written("free", free), work / "free")
-    t, p = history(work / "free", "time"), history(work / "free", "base.p_w")
-    true = np.max(np.abs(p - np.interp(t, history(work / "plain", "time"),
-                                       history(work / "plain", "base.p_w"))))/np.ptp(p)
+    free, plain = work / "free", work / "plain"
+    t, p = history(free, "time"), history(free, "base.p_w")
+    # Given steps begin with 1e-3 s: what is before is between nothing and all.
+    known = np.interp(t, history(plain, "time"), history(plain, "base.p_w"))
+    true = np.max(np.abs(p - known)[t >= 1e-3])/np.ptp(p)
     check("consolidation without dt", done.returncode == 0 and len(
-        t) < 150 and true < 1e-2, (done.stderr, len(t), true))
+        t) < 400 and true < 2e-3, (done.stderr, len(t), true))
     check("consolidation without dt: the tolerance is told",
-          "Stage consolidation: steps are controlled, tolerance 0.01." in done.stdout, done.stdout)
+          "Stage consolidation: steps are controlled, tolerance 0.001." in done.stdout, done.stdout)
     check("given steps: no tolerance is told", "are controlled" not in run(TERZAGHI, work / "told", "--check").stdout)
     done = run(written("rain", RAIN.read_text().replace("   dt = 100\n", "")), work / "rain",
                "--step-tolerance", "1e-3")

@@ -300,3 +300,23 @@ def test_an_iterate_that_strains_soil_by_more_than_one_is_no_convergence():
     done = start("pulled", pulled)
     check("exit code 14 and where", done.returncode == 14
           and "the material of element 1, point 1, is strained by more than 1 in the step" in done.stderr, done.stderr)
+
+
+def test_a_material_outside_its_tests_is_told():
+    def told(keys):
+        text = SCENE.replace("toyoura.nml'", "toyoura.nml' " + keys)
+        return [line for line in warnings(text, "--check") if "fitted to" in line]
+
+    inside = "tested_e_min = 0.7 tested_e_max = 0.9 tested_p_min = 0.1 tested_p_max = 50"
+    check("inside is no doubt", told(inside) == [])
+    loose = told("tested_e_min = 0.6 tested_e_max = 0.75")
+    check("a void ratio", len(loose) == 1
+          and "scene.nml:7: material 'sand' begins outside what it was fitted to at 24 of 24 points: the "
+          "void ratio is 0.8, in its tests 0.6 to 0.75." in loose[0], loose)
+    low = told("tested_p_min = 100 tested_p_max = 800")
+    check("a stress", len(low) == 1 and "kPa, in its tests 100 to 800" in low[0], low)
+    # Of the 24 points those below the surface alone have less than 2 kPa: fewer than a tenth of them.
+    check("a few points below the surface are none", told("tested_p_min = 0.5 tested_p_max = 800") == [])
+    (work / "scene.nml").write_text(SCENE.replace("toyoura.nml'", "toyoura.nml' tested_e_min = 1 tested_e_max = 0.5"))
+    done = subprocess.run([host, work / "scene.nml", "--check"], capture_output=True, text=True, env=environment)
+    check("a range upside down is refused", done.returncode == 2 and "at most tested_e_max" in done.stderr, done.stderr)

@@ -293,6 +293,9 @@ def test_the_fit_finds_h_0_and_n_d_again():
         ),
         path.read_text(),
     )
+    ranges = mud.Material(path).tested
+    check("with the range of its tests", ranges["tested_e_min"] < ranges["tested_e_max"]
+          and f"{ranges['tested_p_min']:.0f} to {ranges['tested_p_max']:.0f} kPa" in path.read_text(), path.read_text())
     done = subprocess.run([build / "drivers/mud_triax", root / "drivers/cases/undrained_e833_p100.nml",
                            "--material", path, "--output", work / "typed.csv", "--quiet"],
                           capture_output=True, text=True)

@@ -677,3 +677,16 @@ def test_public_functions_have_type_hints_and_a_docstring():
             bare.append(name)
     check("public functions have type hints and a docstring", len(list(public())) > 40 and not bare, bare)
     check("type checkers are told that there are hints", (root / "python/mud/py.typed").exists())
+
+
+def test_a_material_knows_the_range_of_its_tests():
+    sand = mud.Material("karlsruhe")
+    wanted = {"tested_e_min": 0.693, "tested_e_max": 1.005, "tested_p_min": 12.0, "tested_p_max": 859.0}
+    check("ranges of the file", sand.tested == wanted, sand.tested)
+    check("another parameter keeps them", sand.changed(G_0=100.0).tested == wanted)
+    check("in MPa", sand.converted(1e-3).tested["tested_p_max"] == 0.859, sand.converted(1e-3).tested)
+    check("no ranges, none told", mud.Material("toyoura").tested == {})
+    (work / "again.nml").write_text(sand.group())
+    check("they are written and read again", mud.Material(work / "again.nml").tested == wanted)
+    (work / "wrong.nml").write_text("&material\n   tested_e_min = 'loose'\n/\n")
+    check("no number: refused", "tested_e_min" in refused(mud.InputError, lambda: mud.Material(work / "wrong.nml")))

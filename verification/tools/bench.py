@@ -183,6 +183,7 @@ def number(text, key):
 
 
 def parameters(path=MATERIAL):
-    """Numbers of a file of parameters by their names."""
+    """Numbers of a file of parameters by their names, without the range of the tests behind them."""
     text = re.sub(r"!.*", "", path.read_text(encoding="utf-8"))
-    return {key: float(value) for key, value in re.findall(r"(\w+)\s*=\s*([-+.\deE]+)", text)}
+    return {key: float(value) for key, value in re.findall(r"(\w+)\s*=\s*([-+.\deE]+)", text)
+            if not key.startswith("tested_")}

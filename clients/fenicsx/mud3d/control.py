@@ -16,7 +16,7 @@ class Controller:
     def __init__(self, run, stage):
         self.run, self.stage, self.controlled = run, stage, run.controlled
         self.end = run.begun + stage.duration
-        self.accuracy = run.scene.scene.accuracy or 1e-2
+        self.accuracy = run.scene.scene.step_tolerance or 1e-2
         turns = run.scene.breaks()
         self.breaks = turns[(turns > run.begun) & (turns < self.end)]
         span = (self.breaks[0] if len(self.breaks) else self.end) - run.begun

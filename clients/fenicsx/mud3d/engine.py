@@ -209,8 +209,8 @@ class Run:
         rho = stage.rho_inf if stage.rho_inf is not None else 0.8 if stage.analysis == DYNAMIC else 0.0
         self.rho_inf = rho
         self.controlled = stage.steps == "controlled" or (stage.steps != "given" and
-                                                          (stage.dt is None or self.scene.scene.accuracy is not None))
-        accuracy = self.scene.scene.accuracy or 1e-2
+                                                          (stage.dt is None or self.scene.scene.step_tolerance is not None))
+        accuracy = self.scene.scene.step_tolerance or 1e-2
         self.tolerance = stage.tolerance or (min(1e-4, 0.1*accuracy) if self.controlled else 1e-3)
         self.largest = {"u": 0.0, "p": 0.0}
         self.dashpots = boundaries.absorbing(self, stage) if stage.analysis == DYNAMIC else []

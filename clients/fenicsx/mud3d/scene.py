@@ -13,7 +13,7 @@ NEEDED = object()
 #: Groups and their keys with defaults. A list is written as []; None: a number that may be left out.
 KEYS = {
     "scene": {"name": "scene", "geometry": "axisymmetric", "fields": "u", "pressures": "linear", "quadrature": 6.0,
-              "gravity": 0.0, "gravity_history": "", "initial_flow": "drain", "accuracy": None,
+              "gravity": 0.0, "gravity_history": "", "initial_flow": "drain", "step_tolerance": None,
               "checkpoint_steps": 0.0},
     "mesh": {"file": "", "scale": 1.0, "r": [], "r_cells": [], "r_ratio": [], "y": [], "y_cells": [], "y_ratio": [],
              "z": [], "z_cells": [], "z_ratio": [], "cells": ""},
@@ -237,7 +237,7 @@ class Scene:
         values = dict(self.one("muds", name))
         values.pop("name")
         file = values.pop("file", None)
-        tolerance = {} if self.scene.accuracy is None else {"tolerance": min(1e-3, 0.1*self.scene.accuracy)}
+        tolerance = {} if self.scene.step_tolerance is None else {"tolerance": min(1e-3, 0.1*self.scene.step_tolerance)}
         try:
             return mud.Material(str(self.path.parent/file) if file else None, **{**tolerance, **values})
         except mud.MudError as problem:

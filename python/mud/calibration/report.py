@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import _native
 from ..errors import MudError
+from ..material import TESTED
 from ..namelist import LONGEST, quoted
 from ..plots import COLOURS, logarithmic, pyplot
 from ..registry import parameters
@@ -41,6 +42,7 @@ def write_material(result: Calibration, folder: pathlib.Path) -> pathlib.Path:
         "&material",
         f"   name = {quoted((task.title or task.name) + ('' if '(' in task.title else ' (fitted)'), LONGEST)}",
         f"   reference = {quoted(task.reference, LONGEST)}",
+        *(f"   {name} = {text}".ljust(26) + "! of the fitted tests" for name, text in zip(TESTED, _range_of_tests(result))),
     ]
     for name, entry in parameters.items():
         value = result.material[name]
@@ -58,9 +60,8 @@ def _origin(task: Task) -> str:
     return task.reference or ", ".join(sorted({item.test.source for item in task.items}))
 
 
-def _range_text(result: Calibration) -> str:
-    """Range of stress and void ratio, or of suction, of the fitted tests."""
-    told = []
+def _range_of_tests(result: Calibration) -> list[str]:
+    """Least and largest void ratio, least and largest stress of the fitted tests; none where they have no such columns."""
     mechanical = [i for i in result.task.fitted() if i.test.kind != "retention"]
     stressed = [i for i in mechanical if "p" in i.test or "sigma_a" in i.test]
     ratios = [i for i in mechanical if "e" in i.test]
@@ -69,10 +70,15 @@ def _range_text(result: Calibration) -> str:
             [i.test["p" if "p" in i.test else "sigma_a"][i.use.rows] for i in stressed]
         )
         ratio = np.concatenate([i.test["e"][i.use.rows] for i in ratios])
-        told.append(
-            f"stress (p', oedometer: sigma_a) {stress.min():.0f} to {stress.max():.0f} kPa, void ratio "
-            f"{ratio.min():.3f} to {ratio.max():.3f}"
-        )
+        return [f"{ratio.min():.3f}", f"{ratio.max():.3f}", f"{stress.min():.0f}", f"{stress.max():.0f}"]
+    return []
+
+
+def _range_text(result: Calibration) -> str:
+    """Range of stress and void ratio, or of suction, of the fitted tests."""
+    told = []
+    for e_min, e_max, least, most in filter(None, [_range_of_tests(result)]):
+        told.append(f"stress (p', oedometer: sigma_a) {least} to {most} kPa, void ratio {e_min} to {e_max}")
     retention = [i for i in result.task.fitted() if i.test.kind == "retention"]
     if retention:
         suction = np.concatenate([i.test["suction"][i.use.rows] for i in retention])

@@ -7,13 +7,14 @@ import argparse
 import csv
 import os
 import pathlib
+import shlex
 import subprocess
 import sys
 
 from ..errors import InputError
 from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
 from .effects import SHARE, Effects, Silent
-from .runs import Failed, Scene
+from .runs import BudgetUsedUp, Failed, Scene
 from .pictures import accuracy_picture, effects_picture, price_picture
 from .switches import plain, settled, write_scene
 
@@ -101,6 +102,7 @@ def accuracy(scene: Scene, args, folder=None) -> int:
     for name, e in sorted(pair.errors.items(), key=lambda item: -item[1].total):
         scene.say(f"   {name}: {e.change:.4g}, {share(e.total)}")
     scene.say(f"results: {scene.folder / pair.run.key.folder}; errors: {folder / 'accuracy.csv'}, accuracy.png")
+    scene.say(f"that run: {recipe(scene, pair.run.key)}")
     print(last_line(result, scene, args.accuracy))
     return EXIT_CODES[result.state]
 
@@ -108,7 +110,7 @@ def accuracy(scene: Scene, args, folder=None) -> int:
 def price(scene: Scene, args) -> int:
     """The study `price`: pairs for 10, 3 and 1 %; what the budget does not reach is expected from those."""
     study = Study(scene, LEVELS[0], args.goals)
-    rows, result = [], None
+    rows, recipes, result = [], [], None
     for level in LEVELS:
         study.accuracy = level
         if result is None or result.state == MET:
@@ -120,9 +122,11 @@ def price(scene: Scene, args) -> int:
         if enough:
             best = min(enough, key=lambda p: p.run.seconds)
             rows.append((level, MET, best.fineness, best.tolerance, best.total, best.run.seconds))
+            recipes.append(recipe(scene, best.run.key))
         else:
             expected = study.expected(level)
             rows.append((level, result.state, *(expected or ("", "", "", ""))))
+            recipes.append(recipe(scene, study.key(*expected[:2])) if expected else "")
     with open(scene.folder / "price.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(("accuracy", "state", "fineness", "step_tolerance", "total", "seconds"))
@@ -130,13 +134,11 @@ def price(scene: Scene, args) -> int:
     price_picture(scene.folder / "price.png", study, rows)
     if rows[-1][1] != MET:
         print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr, flush=True)
-    for level, state, fineness, tolerance, total, seconds in rows:
+    for (level, state, _, _, total, seconds), command in zip(rows, recipes):
         known = "measured" if state == MET else "expected"
         print(
-            f"{share(level)}: no run is known that holds it"
-            if fineness == ""
-            else f"{share(level)}: {seconds:.2g} s, {known} {share(total)}: mud_host {scene.path} "
-            f"--fineness {fineness:g} --step-tolerance {tolerance:.2g}"
+            f"{share(level)}: "
+            + (f"{seconds:.2g} s, {known} {share(total)}: {command}" if command else "no run is known that holds it")
         )
     return EXIT_CODES[MET if rows[-1][1] == MET else result.state]
 
@@ -167,6 +169,9 @@ def reduced(scene: Scene, args) -> pathlib.Path:
     except Silent as silent:
         scene.say(f"effects: {silent}; no effect is tried")
         rows = []
+    except BudgetUsedUp:
+        scene.say("effects: the budget ends before the pilots do; all stays as the scene has it")
+        rows = []
     except Failed as failure:
         print(f"mud_study: effects: {failure}; all stays as the scene has it", file=sys.stderr)
         rows = []
@@ -180,9 +185,21 @@ def reduced(scene: Scene, args) -> pathlib.Path:
         study.write(scene.folder / "effects.csv")
         effects_picture(scene.folder / "effects.png", rows, study.tolerance)
     write_scene(study.reduced() if rows else settled(plain(scene.groups)), path, scene.path.parent)
+    untried = [r.name for r in study.rows if not (r.by_hand or r.on or (rows and r.influence is not None))]
+    if untried:
+        print(
+            f"mud_study: no key says {', '.join(untried)}, nothing in the scene asks for it, and no pilot has tried "
+            "it: off. Say it by its key, or try it by --share inf",
+            file=sys.stderr,
+        )
     quoted = f", for a run quoted at {study.quote:.3g} s" if study.quote else ""
     scene.say(f"{study.pilots} pilots, {study.spent:.3g} s of processor time{quoted}; scene of the run: {path}")
     return path
+
+
+def recipe(scene, key) -> str:
+    """The command that makes a run."""
+    return shlex.join(["mud_host", str(scene.path), *scene.words_of(key)])
 
 
 def last_line(result, scene, asked):
@@ -190,7 +207,7 @@ def last_line(result, scene, asked):
     run = pair.run
     return (
         f"{sum_of(pair.errors[pair.worst])}, of {pair.worst}; asked {share(asked)}: {result.state}; "
-        f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.2g}, {run.seconds:.3g} s; study of "
+        f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.4g}, {run.seconds:.3g} s; study of "
         f"{len(scene.runs)} runs, {scene.spent / max(run.processor, 1e-3):.2g} times that run"
     )
 

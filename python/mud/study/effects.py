@@ -16,7 +16,7 @@ import numpy as np
 
 from ..host import HostRun
 from .histories import between
-from .runs import Failed, Scene, cut_off
+from .runs import DEFAULT_TOLERANCE, Failed, Scene, cut_off
 from .switches import Effect, is_present, list_effects, many, one, plain, settled, switch, write_scene
 
 PILOT_FACTOR = 2.0  # an influence is taken so many times as large, for the coarseness of the pilot
@@ -70,7 +70,7 @@ class Effects:
         self.folder = scene.path.parent
         self.given = plain(scene.groups)
         self.tolerance = float(one(self.given).get("effects_tolerance", TOLERANCE))
-        self.accuracy = float(one(self.given).get("accuracy", one(self.given).get("step_tolerance", 1e-2)))
+        self.accuracy = float(one(self.given).get("step_tolerance", DEFAULT_TOLERANCE))
         self.rows = list_effects(self.given, self.folder)
         self.reading = settled(self.given)
         self.has_fields = {}
@@ -99,7 +99,6 @@ class Effects:
             stage.pop("output_dt", None)
             if ends:
                 stage.update(ends[i - 1])
-        one(text).pop("accuracy", None)
         tolerance = min(2**level * self.accuracy, LEAST_TOLERANCE)
         if not ends:
             self._lengthen(text, 2**level)
@@ -143,7 +142,7 @@ class Effects:
 
     def _is_given(self, stage):
         """Whether a stage has given steps."""
-        asked = bool(set(one(self.given)) & {"accuracy", "step_tolerance"})
+        asked = "step_tolerance" in one(self.given)
         return "dt" in stage and str(stage.get("steps", "controlled" if asked else "given")).lower() == "given"
 
     def _cells(self):
@@ -158,8 +157,8 @@ class Effects:
         return cells if self.share == math.inf else max(cells, math.isqrt(elements // MANY_ELEMENTS[0]))
 
     def _afford(self):
-        """Silent where the mesh and the steps of pilots cannot be so much coarser that the least of them are within their
-        share: then the first one would be lost."""
+        """Silent where the mesh and the steps of pilots cannot be so much coarser that the least of them are within
+        their share: then the first one would be lost."""
         times = self.cells**CELLS * GROWTH ** math.log2(LEAST_TOLERANCE / self.accuracy)
         for stage in many(self.reading, "stage"):
             if self._is_given(stage):
@@ -450,7 +449,7 @@ class Effects:
         for row in self.rows:
             if row.on != is_there(scene, row, self.folder):
                 switch(scene, row, row.on)
-        for key in ("accuracy", "step_tolerance", "goals"):
+        for key in ("step_tolerance", "goals"):
             if key in one(self.given):
                 one(scene)[key] = one(self.given)[key]
         return scene

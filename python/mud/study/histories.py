@@ -58,9 +58,9 @@ class Histories:
         return self.values[name] if name in self.values else self.forces[name]
 
     def change(self, name: str) -> float:
-        """Largest change of an answer since its start."""
+        """Largest change of an answer since its start; of a force, which has no value there, its largest value."""
         value = self.history(name)[1]
-        return float(np.max(np.abs(value - value[0])))
+        return float(np.max(np.abs(value - (value[0] if name in self.values else 0.0))))
 
     def answers(self) -> list[str]:
         """Unknowns that change, by more than a thousandth of the largest change of their kind."""

@@ -51,16 +51,31 @@ def price_picture(path, study, rows):
     for fineness, mark in zip(study.finenesses(), "^osDv"):
         line = study.front(fineness)
         axes.loglog(*zip(*line), "--", marker=mark, color="0.5", mfc="w", lw=0.8, ms=4)
-        axes.annotate(f"F {fineness:g}, expected", line[-1], fontsize=7, color="0.4", va="top")
-    pairs = study.pairs
-    axes.loglog([p.run.seconds for p in pairs], [p.total for p in pairs], "-s", color="k", lw=1.5)
+        axes.annotate(
+            f"F {fineness:g}, expected",
+            line[-1],
+            fontsize=7,
+            color="0.4",
+            xytext=(4, -4),
+            textcoords="offset points",
+            va="top",
+        )
+    pairs = sorted(study.pairs, key=lambda p: p.run.seconds)
+    axes.loglog([p.run.seconds for p in pairs], [p.total for p in pairs], "s", color="k")
+    front = [p for i, p in enumerate(pairs) if p.total <= min(q.total for q in pairs[: i + 1])]
+    axes.loglog([p.run.seconds for p in front], [p.total for p in front], "-", color="k", lw=1.5)
     axes.annotate(
-        "measured", (pairs[-1].run.seconds, pairs[-1].total), fontsize=8, xytext=(6, 6), textcoords="offset points"
+        "measured",
+        (front[-1].run.seconds, front[-1].total),
+        fontsize=8,
+        xytext=(-6, -12),
+        ha="right",
+        textcoords="offset points",
     )
     for level, *_ in rows:
         axes.axhline(level, color="0.7", lw=0.7)
         axes.annotate(f"{100 * level:g} %", (0.01, level), xycoords=("axes fraction", "data"), fontsize=7, va="bottom")
-    axes.margins(0.1)
+    axes.margins(x=0.3, y=0.1)
     axes.set(xlabel="time of the run [s]", ylabel="error of the worst answer [-]")
     figure.savefig(path, dpi=130, bbox_inches="tight")
     plt.close(figure)

@@ -28,8 +28,8 @@ except ImportError as problem:
 LOOSEST = 0.1  # step tolerance above which nothing differs: steps of flows grow as fast as they may
 # What the host takes where the scene says nothing, of a step tolerance A: a tenth, at most this (host/README.md).
 NEWTON_LARGEST, STRESS_LARGEST, SHARE = 1e-4, 1e-3, 0.1
+DEFAULT_TOLERANCE = 1e-3  # of the steps that a stage chooses
 GIVEN_NEWTON = 1e-3  # the same of stages with given steps
-COMPLETE = (0, 20)  # exit codes of runs whose results are complete
 WORDS_EVERY = 10.0  # a run that lasts longer says every so many seconds where it is [s]
 LOCALISED = 0.05  # share of the work that is done where the soil has lost ellipticity [-]
 
@@ -138,7 +138,7 @@ class Scene:
             raise self.failed[key]
         if key not in self.runs:
             told = self._found(key, most) or self._make(key, keep, most)
-            if told["code"] not in COMPLETE:
+            if told["code"] != 0:
                 words = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
                 self.failed[key] = Failed(CUT_OFF if told["code"] == -signal.SIGXCPU else words, told["code"])
                 self.lost += told["processor"]

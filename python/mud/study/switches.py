@@ -41,7 +41,7 @@ KINDS = (
     "void_ratio_in_retention",
     *MUD,
 )
-OF_STUDY = ("effects", "effects_tolerance", "effects_pilot_share", "effects_on_warning", "without", "accuracy", "goals")
+OF_STUDY = ("effects", "effects_tolerance", "effects_pilot_share", "effects_on_warning", "without", "step_tolerance", "goals")
 
 
 @dataclass

@@ -14,8 +14,9 @@ from mud.study.accuracy import Study  # noqa: E402
 from mud.study.histories import distance  # noqa: E402
 from mud.study.runs import BudgetUsedUp, Failed, Scene  # noqa: E402
 
-SCENES = [ROOT / "verification/studies/cost/scenes" / f"{name}.nml" for name in ()] + [
-    ROOT / "verification/studies/price" / f"{name}.nml" for name in ("strip", "slope", "shaken", "ring", "rain_layers")]
+STUDIES = ROOT / "verification/studies"
+SCENES = [STUDIES / "cost/scenes" / f"{x}.nml" for x in "drop footing harmonic mandel push rain sand".split()]
+SCENES += [STUDIES / "price" / f"{x}.nml" for x in ("strip", "slope", "shaken", "ring", "rain_layers")]
 HEAD = ("scene", "asked", "state", "fineness", "step_tolerance", "answer", "told", "true", "told_over_true",
         "least_ratio", "most_ratio", "seconds", "study_over_run")
 

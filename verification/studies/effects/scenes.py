@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Scenes that a careless choice of effects spoils, and scenes that need few of them. Every scene leaves open what it can
-(`effects = 'auto'`): fields, gravity, inertia and the switches of the material. They are small, so that pilots may cost as
-much as they like."""
+"""Scenes that a careless choice of effects spoils, and scenes that need few of them, for `mud_study effects`. Every scene
+leaves open what it can (`effects = 'auto'`): fields, gravity, inertia and the switches of the material."""
 from dataclasses import dataclass
 
-AUTO = ""
+AUTO = "effects = 'auto'"
 
 ELASTIC = "&elastic name = 'soil' young = 1.0e4 poisson = 0.25 /"
 WATER = "&permeability name = 'k' intrinsic = {k} law = 'constant' /"
