@@ -19,11 +19,11 @@ module folder_lock
          import :: c_int
       end function getpid
 
-      !> With signal 0: 0 if the process lives and is ours, else -1.
-      integer(c_int) function kill(process, signal) bind(c)
+      !> Group of a process, also of another user; -1: there is no such process.
+      integer(c_int) function getpgid(process) bind(c)
          import :: c_int
-         integer(c_int), value :: process, signal
-      end function kill
+         integer(c_int), value :: process
+      end function getpgid
 
       !> The name of this host, ended by a zero; 0 if it is known.
       integer(c_int) function gethostname(name, length) bind(c)
@@ -69,12 +69,12 @@ contains
       integer(c_int), intent(in) :: owner
       character(*), intent(in) :: host
       character(:), allocatable :: here
-      integer(c_int) :: own, status
+      integer(c_int) :: own, group
 
       here = this_host()
       own = getpid()
-      status = kill(owner, 0_c_int)
-      lives = host /= here .or. (status == 0 .and. owner /= own)
+      group = getpgid(owner)
+      lives = host /= here .or. (owner > 0 .and. group >= 0 .and. owner /= own)
    end function lives
 
    !> The name of this host.

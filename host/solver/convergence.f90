@@ -63,6 +63,7 @@ module convergence
       real(wp) :: before(FIELDS) = 0.0_wp     !< The same of the correction before it; 0: there was none.
       logical :: balanced = .false.           !< The residual begins and ends at the rounding of the forces.
       integer :: worst_field = 0, worst_unknown = 0
+      real(wp) :: scales(FIELDS) = 0.0_wp     !< What the errors are shares of [kN, m3/s].
       real(wp) :: forces(FIELDS) = 0.0_wp     !< Magnitudes of all contributions, in the norm of a field [kN, m3/s].
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
       logical :: refused_guess = .false.      !< The first guess was refused, the step began at the unchanged state.
@@ -117,7 +118,7 @@ contains
    !> of differential equations judge their iterations (Hairer & Wanner 1996, section IV.8): corrections that fall by a
    !> share s each add up to s/(1 - s) of the last one. Where air vanishes from pores, or comes back, the balance of air
    !> has a double root: corrections halve, and its forces vanish with it, so that the residual is never small beside
-   !> them.
+   !> them. It has to be small beside the water's: in dry soil large pressures hide changes that move much water.
    !> docs/theory/host.md section 5.1.
    pure function hidden(control, log)
       type(control_t), intent(in) :: control
@@ -129,6 +130,7 @@ contains
       share = MOST_KEPT
       where (hidden) share = min(MOST_KEPT, log%changed/log%before)
       hidden = hidden .and. log%changed < log%before .and. log%changed*share/(1 - share) < control%negligible
+      hidden = hidden .and. log%error*log%scales < control%tolerance*maxval(log%scales(DISPLACEMENTS + 1:))
    end function hidden
 
    !> Whether the error has ceased to fall above the tolerance and below the roughness of the stress integration: the
@@ -289,6 +291,7 @@ contains
       log%forces = sqrt(s)
       most = max(largest, log%forces)
       scales = max(field_scales(dofs, constraint, assembly, most), rounding)
+      log%scales = scales
       log%error = residual_norms(dofs, constraint, rhs)/scales
       do i = 1, dofs%n
          if (is_body(constraint, i)) &

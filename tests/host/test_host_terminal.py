@@ -144,6 +144,8 @@ def test_a_second_run_in_a_folder_is_refused_while_the_first_lives():
     words = f'echo $$ {here} > "{out}/running"; exec "{host}" "{work}/small.nml" --output "{out}" --quiet'
     own = subprocess.run(["sh", "-c", words], capture_output=True, text=True, env=environment)
     check("and that of a dead run with the number of this one", own.returncode == 0, own.stderr)
+    (out / "running").write_text(f"1 {here}\n")
+    check("a process of another user lives too", run(work / "small.nml", out).returncode == 4)
     (out / "running").write_text(f"{first.pid} another-{here}\n")
     other = run(work / "small.nml", out)
     check("of a process of another host nothing is known", other.returncode == 4
