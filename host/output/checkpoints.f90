@@ -14,20 +14,19 @@ module checkpoints
    use run_summary, only: new_peaks
    use sparsity_pattern, only: make_pattern
    use hdf5_file, only: h5_t, new_file, write_file, close_file, put, put_text, get, get_text, extent_of
-   use restart_files, only: restart_kind_t, put_origin, open_restart, codes_of
+   use restart_files, only: restart_kind_t, put_origin, open_restart
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
-   use scene_past, only: past_of_scene, first_difference
-   use texts, only: short, whole
+   use namelists, only: group_t
+   use texts, only: whole
    implicit none (type, external)
    private
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '15', &
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '16', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
-   real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 15, AT_FRAMES = 13, AT_PAIRS = 14, AT_SUDDEN = 15   !< Of the list of counters.
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
@@ -52,8 +51,8 @@ contains
       call put_origin(file, KIND_OF_FILE)
       call put_text(file, 'scene', trim(model%name))
       call put_text(file, 'fingerprint', model%fingerprint)
-      call put(file, 'past', codes_of(past_of_scene(model%groups, model%amplitudes, run%at%stage, run%state%time)), &
-               '-', 'the scene so far, one key a line: the codes of its characters')
+      call put(file, 'groups', model%hashes, '-', &
+               'two numbers for every group of the scene, to find the one that differs')
       call put_text(file, 'origin', tables%origin)
       associate (s => run%state, c => run%at)
          call put(file, 'counters', counters_of(run, tables), '-', 'stage, step of it, cuts in force, good steps, '// &
@@ -96,7 +95,7 @@ contains
    end subroutine write_checkpoint
 
    !> Puts a prepared run where the checkpoint was written. Fault EXIT_RESTART: no HDF5, no checkpoint, a damaged one,
-   !> one of another version, or of a scene with another past.
+   !> one of another version, or of another scene.
    subroutine read_checkpoint(path, model, run, tables, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
@@ -111,7 +110,7 @@ contains
 
       call open_restart(path, KIND_OF_FILE, file, fault)
       if (fault%code /= 0) return
-      call check_origin(path, model, file, fault)
+      call check_scene(path, model, file, fault)
       if (fault%code == 0) then
          counters = 0.0_wp
          call get(file, 'counters', counters)
@@ -224,70 +223,53 @@ contains
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine take_pairs
 
-   !> Refuses files of another scene.
-   subroutine check_origin(path, model, file, fault)
+   !> Refuses a checkpoint of another scene: fault EXIT_RESTART names the first group that differs.
+   subroutine check_scene(path, model, file, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
       type(h5_t), intent(inout) :: file
       type(fault_t), intent(inout) :: fault
-      character(64) :: theirs
-      character(:), allocatable :: difference
-      real(wp) :: counters(N_COUNTERS), stage(4)
-      integer :: number
-      logical :: differs
+      integer, allocatable :: theirs(:)
+      character(:), allocatable :: there
+      integer :: g, groups
 
-      theirs = get_text(file, 'fingerprint')
-      if (theirs == model%fingerprint) return
-      ! Another scene may go on from here if it says the same about the past.
-      counters = 0.0_wp
-      stage = 0.0_wp
-      call get(file, 'counters', counters)
-      call get(file, 'stage', stage)
-      if (.not. file%good .or. .not. possible(counters, huge(0))) then
+      if (get_text(file, 'fingerprint') == model%fingerprint) return
+      allocate (theirs(extent_of(file, 'groups')))
+      call get(file, 'groups', theirs)
+      if (size(theirs) == 0 .or. .not. file%good) then
          call raise(fault, EXIT_RESTART, path//DAMAGED)
          return
       end if
-      number = nint(counters(1))
-      difference = ''
-      if (number <= size(model%stages)) difference = first_difference(past_of_scene(model%groups, model%amplitudes, &
-                                                                                    number, stage(1)), past_in(file))
-      differs = difference /= ''
-      if (number > size(model%stages)) then
-         call raise(fault, EXIT_RESTART, foreign()//'it stands in stage '//whole(number)//', and the scene has '// &
-                    whole(size(model%stages))//'.')
-      else if (differs) then
-         call raise(fault, EXIT_RESTART, foreign()//difference//'. Groups, keys, values and files must be those of '// &
-                    'the run, but for threads and checkpoint_*; what may differ is the duration of the stage under '// &
-                    'way ('//trim(model%stages(number)%name)//'), later stages with the &fix and &load '// &
-                    'of these alone, and histories after '//short(stage(1))//' s.')
-      else if (stage(2) + model%stages(number)%duration < stage(1)*(1 - ROUNDING)) then
-         call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of '// &
-                    'stage '//trim(model%stages(number)%name)//' at '// &
-                    short(stage(2) + model%stages(number)%duration)//' s.')
+      groups = size(model%groups)
+      do g = 1, min(groups, size(theirs)/2)
+         if (any(model%hashes(2*g - 1:2*g) /= theirs(2*g - 1:2*g))) exit
+      end do
+      there = whole(size(theirs)/2)
+      if (g > groups) then
+         call different(whole(groups)//' groups are here, and '//there//' were in the scene of the checkpoint')
+      else if (2*g > size(theirs)) then
+         call different('the checkpoint has no '//named(model%groups(g))//', for its scene ended after '//there// &
+                        ' groups')
+      else
+         call different(named(model%groups(g))//' is another group, or has another key, value or file, here than '// &
+                        'in the checkpoint')
       end if
    contains
-      function foreign() result(text)
+      subroutine different(text)
+         character(*), intent(in) :: text
+
+         call raise(fault, EXIT_RESTART, path//' belongs to another scene ('//trim(get_text(file, 'scene'))// &
+                    '): '//text//'. Groups, keys, values and files must be those of the run, but for threads, '// &
+                    'goals and checkpoint_*; start a changed scene from its beginning.')
+      end subroutine different
+
+      function named(group) result(text)
+         type(group_t), intent(in) :: group
          character(:), allocatable :: text
 
-         text = path//' belongs to another scene ('//trim(get_text(file, 'scene'))//', fingerprint '// &
-                trim(theirs)//', here '//model%fingerprint//'): '
-      end function foreign
-   end subroutine check_origin
-
-   !> The past that a checkpoint contains, see past_of_scene.
-   function past_in(file) result(text)
-      type(h5_t), intent(inout) :: file
-      character(:), allocatable :: text
-      integer, allocatable :: codes(:)
-      integer :: i
-
-      allocate (codes(extent_of(file, 'past')))
-      call get(file, 'past', codes)
-      allocate (character(size(codes)) :: text)
-      do i = 1, size(codes)
-         text(i:i) = achar(iand(codes(i), 255))
-      end do
-   end function past_in
+         text = '&'//trim(group%name)//' in line '//whole(group%line)
+      end function named
+   end subroutine check_scene
 
    !> Tractions of all contacts with friction, one behind the other [kPa].
    pure function tractions_of(run) result(tractions)
