@@ -8,7 +8,7 @@ module run_output
    use folder_lock, only: lock_folder, unlock_folder
    use interrupts, only: interrupted, EXIT_INTERRUPTED
    use hdf5_file, only: HAS_HDF5
-   use texts, only: short, whole
+   use texts, only: short
    use checkpoints, only: write_checkpoint, CHECKPOINT
    use warnings, only: print_warning
    use field_files, only: write_frame
