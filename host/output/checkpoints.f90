@@ -6,7 +6,7 @@ module checkpoints
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use run_state, only: run_t
-   use control_state, only: new_control_state, numbers_of, set_numbers, count_of_numbers
+   use control_state, only: control_state_t, new_control_state
    use degrees_of_freedom, only: dofs_t
    use output_tables, only: tables_t, flush_tables
    use model_types, only: model_t, gravity_at
@@ -42,6 +42,7 @@ contains
       type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
+      type(control_state_t) :: control
       logical :: good
 
       ! What the checkpoint counts on comes first.
@@ -82,7 +83,8 @@ contains
          'stress of the damping in proportion to the stiffness')
       if (size(model%points) > 0) call put(file, 'peaks', [tables%peaks%value, tables%peaks%time], &
          'm, kPa, s', 'largest unknowns of the named points so far, and when')
-      call put(file, 'control', numbers_of(run%control), '-', 'control of the time step: see control_state')
+      control = run%control
+      call exchange_control(file, control, .false.)
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
                                                       'flow that is subtracted, forces that hold the ground')
       if (size(tractions_of(run)) > 0) call put(file, 'friction', tractions_of(run), 'kPa', &
@@ -144,7 +146,8 @@ contains
          if (allocated(run%damping_stress)) call get(file, 'damping_stress', run%damping_stress)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good) call take_tractions(file, run)
-         if (file%good) call take_control(file, model, run)
+         run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%contacts))
+         if (file%good) call exchange_control(file, run%control, .true.)
          if (file%good .and. counters(AT_PAIRS) > 0.5_wp) &
             call take_pairs(file, nint(counters(AT_PAIRS)), model%dofs, run)
          if (file%good) then
@@ -193,19 +196,83 @@ contains
       end associate
    end subroutine take_peaks
 
-   !> The control of the time step.
-   subroutine take_control(file, model, run)
+   !> Writes the control of the time step, or reads it, component by component. Names have no folder: HDF5 would store
+   !> the time at which it was made, and equal runs would leave different files.
+   subroutine exchange_control(file, control, reading)
       type(h5_t), intent(inout) :: file
-      type(model_t), intent(in) :: model
-      type(run_t), intent(inout) :: run
-      real(wp), allocatable :: list(:)
+      type(control_state_t), intent(inout) :: control   !< After new_control_state.
+      logical, intent(in) :: reading
 
-      if (.not. file%good) return
-      run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%contacts))
-      allocate (list(count_of_numbers(run%control)))
-      call get(file, 'control', list)
-      if (file%good) call set_numbers(list, run%control)
-   end subroutine take_control
+      associate (c => control%controller, m => control%memory)
+         call number('dt', c%dt, 's', 'next step')
+         call number('last_ratio', c%last_ratio, '-', 'error over allowance of the last accepted step')
+         call flag('held', c%held, 'the last attempt was rejected: the next step is no longer')
+         call number('t_sudden', control%t_sudden, 's', 'time of the last sudden change')
+         call whole_number('fresh', control%fresh, 'accepted steps since then')
+         call number('start_up', control%start_up, 's', 'span in which changes are expected to grow yet')
+         call whole_number('rejected', control%rejected, 'steps repeated because of their error, in the whole run')
+         call row('scale', control%scale, 'm, kPa', 'largest change of every field in the run')
+         call row('limits', control%limits, '-', 'steps by what kept them short')
+         call row('touching', control%touching, '-', 'whether a contact was closed at the start of the step')
+         call table('x_first', control%x_first, 'm, kPa', 'unknowns at the start of the stage')
+         call flag('rates_known', m%known, 'rates of the step before are known, with nothing sudden since')
+         call number('rates_dt', m%dt, 's', 'step from those rates to the present ones')
+         call table('rate', m%rate, 'm/s, kPa/s', 'rates of the unknowns one step back')
+         call row('s_rate', m%s_rate, '1/s', 'rates of saturation one step back')
+      end associate
+   contains
+      subroutine table(name, values, unit, meaning)
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout), contiguous :: values(:, :)
+
+         if (reading) then
+            call get(file, 'control_'//name, values)
+         else
+            call put(file, 'control_'//name, values, unit, meaning)
+         end if
+      end subroutine table
+
+      subroutine row(name, values, unit, meaning)
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout), contiguous :: values(:)
+
+         if (reading) then
+            call get(file, 'control_'//name, values)
+         else
+            call put(file, 'control_'//name, values, unit, meaning)
+         end if
+      end subroutine row
+
+      subroutine number(name, value, unit, meaning)
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout) :: value
+         real(wp) :: values(1)
+
+         values = value
+         call row(name, values, unit, meaning)
+         value = values(1)
+      end subroutine number
+
+      subroutine whole_number(name, value, meaning)
+         character(*), intent(in) :: name, meaning
+         integer, intent(inout) :: value
+         real(wp) :: as_real
+
+         as_real = real(value, wp)
+         call number(name, as_real, '-', meaning)
+         value = nint(as_real)
+      end subroutine whole_number
+
+      subroutine flag(name, value, meaning)
+         character(*), intent(in) :: name, meaning
+         logical, intent(inout) :: value
+         integer :: as_count
+
+         as_count = merge(1, 0, value)
+         call whole_number(name, as_count, meaning)
+         value = as_count == 1
+      end subroutine flag
+   end subroutine exchange_control
 
    !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
    subroutine take_pairs(file, pairs, dofs, run)
