@@ -105,7 +105,10 @@ contains
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
       law%n_state = mud_prepared_statev(law%prepared)
-      law%state_names = [(statev_name(i), i=1, law%n_state)]
+      allocate (law%state_names(law%n_state))
+      do i = 1, law%n_state
+         law%state_names(i) = statev_name(i)
+      end do
       law%is_ratio = [(is_stress_ratio(law%state_names(i)), i=1, law%n_state)]
       law%place_e = statev_index('void_ratio')
       law%place_s_w = statev_index('saturation')

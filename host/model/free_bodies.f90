@@ -248,7 +248,7 @@ contains
          end do
       end associate
       motion = 0
-      if (.not. (turn_held .or. any(high - low > near) .or. model%domain%axisymmetric)) motion = TURN
+      if (.not. (turn_held .or. any(high > low + near) .or. model%domain%axisymmetric)) motion = TURN
       if (low(AT_U_Z) > high(AT_U_Z)) motion = AT_U_Z
       if (low(AT_U_R) > high(AT_U_R) .and. .not. model%domain%axisymmetric) motion = AT_U_R
    end function free_motion
