@@ -53,7 +53,6 @@ contains
       law%poisson = poisson
       law%has_energy = .true.
       law%state_names = [character(NAME_LENGTH) :: 'void_ratio', 'saturation']
-      law%state_units = [character(NAME_LENGTH) :: '1', '1']
       law%n_state = size(law%state_names)
    end function isotropic
 

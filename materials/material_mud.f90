@@ -5,8 +5,8 @@ module material_mud
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, NONE
-   use library_tables, only: property_count, property_index, property_name, property_range, &
-                             range_for, statev_index, statev_name, statev_unit
+   use library_tables, only: property_count, property_index, property_name, property_range, range_for, statev_index, &
+                             statev_name
    use material_point, only: range_t, material_t, response_t, report_t, remark_t, NAME_LENGTH, NO_PRESET
    use retention_curves, only: saturation_t
    use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepared_statev, mud_prepare, mud_init, &
@@ -101,15 +101,13 @@ contains
       law%given_tolerance = not_the_default('tolerance', law%tolerance)
       law%given_scheme = not_the_default('scheme', law%props(property_index('scheme')))
       law%unguarded = releases_pressure(law%props)
-      law%turns_at_once = .not. law%props(property_index('rho_e')) > 0.0_wp
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
       law%n_state = mud_prepared_statev(law%prepared)
-      allocate (law%state_names(law%n_state), law%state_units(law%n_state))
+      allocate (law%state_names(law%n_state))
       do i = 1, law%n_state
          law%state_names(i) = statev_name(i)
-         law%state_units(i) = statev_unit(i)
       end do
       law%is_ratio = [(is_stress_ratio(law%state_names(i)), i=1, law%n_state)]
       law%place_e = statev_index('void_ratio')

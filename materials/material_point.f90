@@ -70,13 +70,12 @@ module material_point
       logical :: has_retention = .false.    !< It knows its saturation itself; no curve beside it.
       logical :: saturation_is_state = .false.   !< It has a history: retention() is where it starts, no more.
       logical :: unguarded = .false.        !< Made for a mean effective stress above 0, and nothing keeps it there.
-      logical :: turns_at_once = .false.    !< A strain that turns changes its rates at once, however small it is.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
       real(wp) :: tolerance = 0.0_wp        !< Of the stress integration, relative; 0: the law has none.
       logical :: given_tolerance = .false., given_scheme = .false.   !< Not the defaults: set by hand.
       character(NAME_LENGTH) :: guard_names(MOST_GUARDS) = ''
-      character(NAME_LENGTH), allocatable :: state_names(:), state_units(:)
+      character(NAME_LENGTH), allocatable :: state_names(:)
       character(DOUBT_LENGTH) :: doubt = ''      !< Of its parameters, allowed and most often a mistake: a sentence.
       type(stress_unit_t) :: unit                !< Of its stresses; kPa in the comments of this module.
       type(range_t) :: tested_e, tested_p        !< Void ratios, stresses [kPa] of the tests behind it; without: any.

@@ -119,8 +119,7 @@ contains
       if (fault%code /= 0) return
 
       law%n_state = law%n_statv + OWN
-      allocate (law%state_names(law%n_state), law%state_units(law%n_state))
-      law%state_units = '1'
+      allocate (law%state_names(law%n_state))
       do i = 1, law%n_statv
          law%state_names(i) = 'statev_'//whole(i)
       end do

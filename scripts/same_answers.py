@@ -121,7 +121,7 @@ def run(program, name, folder, scene):
             shutil.copytree(folder, folder / "unbroken")
 
 
-NO_ANSWERS = ("fingerprint", "past", "origin", "counters")   # of a checkpoint
+NO_ANSWERS = ("fingerprint", "past", "groups", "origin", "counters")   # of a checkpoint
 
 
 def datasets(path):

@@ -6,7 +6,7 @@ module restart_files
    use library_version, only: library
    implicit none (type, external)
    private
-   public :: restart_kind_t, put_origin, open_restart, codes_of
+   public :: restart_kind_t, put_origin, open_restart
 
    !> A kind of file, and what is said of others.
    type :: restart_kind_t
@@ -58,13 +58,4 @@ contains
       end if
       if (fault%code /= 0) call close_file(file)
    end subroutine open_restart
-
-   !> A text as numbers, the codes of its characters.
-   pure function codes_of(text) result(codes)
-      character(*), intent(in) :: text
-      integer :: codes(len(text))
-      integer :: i
-
-      codes = [(iachar(text(i:i)), i=1, len(text))]
-   end function codes_of
 end module restart_files

@@ -15,9 +15,8 @@ module contact_mortar
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, find_overlap, end_slope, integration_point, pair_points, &
-             unit_force_on_nodes, pair_gaps, penetration, hats, hat_slopes
-   public :: POINTS, POSITION, SHARE, LARGEST_SEGMENTS, LARGEST_POINTS
+   public :: overlap_t, point_t, find_overlap, integration_point, pair_points, pair_gaps, penetration, hats, hat_slopes
+   public :: POINTS, POSITION, SHARE, LARGEST_POINTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
    real(wp), parameter :: POSITION(POINTS) = [-0.861136311594052575224_wp, -0.339981043584856264803_wp, &

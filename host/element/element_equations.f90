@@ -16,7 +16,7 @@ module element_equations
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
    implicit none (type, external)
    private
-   public :: element_t, compute_element, element_size, MAX_DOF, STRAIN_TOO_LARGE
+   public :: element_t, compute_element, element_size, STRAIN_TOO_LARGE
 
    integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
    integer, parameter :: LAST_U = 12

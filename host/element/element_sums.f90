@@ -5,7 +5,6 @@ module element_sums
    use kinds, only: wp
    use porous_balance, only: PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
    use porous_domain, only: gauss_t
-   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, residual_of, matrix_of

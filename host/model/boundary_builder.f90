@@ -6,8 +6,8 @@ module boundary_builder
    use exit_codes, only: EXIT_GROUP
    use model_types, only: model_t
    use name_search, only: mesh_group, defined_name
-   use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, acts_in, &
-                          place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, PRESCRIBED_P_A
+   use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, acts_in, place_of, &
+                          LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
    use texts, only: short, whole
    use triangle_mesh, only: find_group, add_group
    use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C

@@ -15,9 +15,12 @@ module free_bodies
    private
    public :: check_bodies, bodies_on_contact
 
-   integer, parameter :: TURN = 3, MOTIONS = 3                !< Along r, along z, and the rotation of plane strain.
-   real(wp), parameter :: NOTHING = 1.0e-10_wp                !< Pivot that is none, of a matrix with entries up to 1.
-   integer, parameter :: MOST_NAMES = 3
+   integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
+   character(*), parameter :: MOTIONS(TURN) = [character(18) :: 'moving along r (x)', 'moving along z (y)', 'turning']
+   character(*), parameter :: REMEDIES(TURN) = [character(10) :: 'u_r', 'u_z', 'u_z or u_r']
+   !> Nodes nearer than this share of the size of a body are at one place, as far as its rotation is concerned.
+   real(wp), parameter :: NEAR_SHARE = 1.0e-5_wp
+   integer, parameter :: MOST_NAMES = 3   !< Number of groups by which a body is named.
 contains
    !> Refuses a static or quasi-static stage in which neither a support nor a contact holds a body. Fault
    !> EXIT_FREE_BODY: it names a group of the body and the motion.
@@ -36,46 +39,37 @@ contains
             touched = in_contact(model, stage)
             do b = 1, size(body_of)
                ! The first node of a body stands for it; one without an element has no stiffness, and no equation.
-               if (body_of(b) /= b .or. any(touched .and. body_of == b)) cycle
+               if (body_of(b) /= b) cycle
+               if (any(touched .and. body_of == b)) cycle
                motion = free_motion(model, stage, body_of == b)
-               if (motion == 0) cycle
-               call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds '// &
-                          described(model, body_of == b)//' against '//named(motion)//'; add a &fix of '// &
-                          trim(merge('u_r', 'u_z', motion == AT_U_R))//trim(merge(' or u_r', '       ', &
-                          motion == TURN))//' on a group of it, or a contact.')
-               return
+               if (motion > 0) call refuse(stage, described(model, body_of == b)//' against '// &
+                                           trim(MOTIONS(motion))//'; add a &fix of '//trim(REMEDIES(motion))// &
+                                           ' on a group of it, or a contact.')
             end do
             do i = 1, size(model%plates)
-               if (model%plates(i)%group > 0) cycle
-               if (model%plates(i)%turns .and. .not. holds_along_r(model, stage, i)) then
-                  call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds the plate '''// &
-                             trim(model%plates(i)%name)//''' against moving along r (x): no &contact of it that '// &
-                             'acts has friction; give one friction, or a &fix of u_r with the plate as its group.')
-                  return
-               end if
-               if (touched(model%plates(i)%node)) cycle
-               if (is_fixed(model, stage, AT_U_Z, model%plates(i)%node)) cycle
-               call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds the plate '''// &
-                          trim(model%plates(i)%name)//''': no &contact of it acts; add one, or a &fix of u_z with '// &
-                          'the plate as its group.')
-               return
+               associate (plate => model%plates(i))
+                  if (plate%group > 0) cycle
+                  if (plate%turns .and. .not. holds_along_r(model, stage, i)) then
+                     call refuse(stage, 'the plate '''//trim(plate%name)//''' against moving along r (x): no '// &
+                                 '&contact of it that acts has friction; give one friction, or a &fix of u_r with '// &
+                                 'the plate as its group.')
+                  else if (.not. (touched(plate%node) .or. is_fixed(model, stage, AT_U_Z, plate%node))) then
+                     call refuse(stage, 'the plate '''//trim(plate%name)//''': no &contact of it acts; add one, or '// &
+                                 'a &fix of u_z with the plate as its group.')
+                  end if
+               end associate
             end do
          end associate
+         if (fault%code /= 0) return
       end do
    contains
-      pure function named(motion) result(text)
-         integer, intent(in) :: motion
-         character(:), allocatable :: text
+      !> The first sentence stays.
+      subroutine refuse(stage, text)
+         type(stage_t), intent(in) :: stage
+         character(*), intent(in) :: text
 
-         select case (motion)
-         case (AT_U_R)
-            text = 'moving along r (x)'
-         case (AT_U_Z)
-            text = 'moving along z (y)'
-         case default
-            text = 'turning'
-         end select
-      end function named
+         if (fault%code == 0) call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds '//text)
+      end subroutine refuse
    end subroutine check_bodies
 
    !> Whether a &fix or the friction of a contact may hold a plate in its plane along r.
@@ -126,30 +120,23 @@ contains
       body = 0
       associate (mesh => model%domain%mesh)
          do e = 1, size(mesh%t6, 2)
-            do k = 1, 6
-               if (body(mesh%t6(k, e)) == 0) body(mesh%t6(k, e)) = mesh%t6(k, e)
-            end do
+            body(mesh%t6(:, e)) = mesh%t6(:, e)
          end do
          do e = 1, size(mesh%t6, 2)
-            do k = 2, 6
-               call join(mesh%t6(1, e), mesh%t6(k, e))
-            end do
+            call join(mesh%t6(:, e))
          end do
          do i = 1, size(model%ties)
             do k = 1, size(model%ties(i)%pairs, 2)
-               call join(model%ties(i)%pairs(1, k), model%ties(i)%pairs(2, k))
+               call join(model%ties(i)%pairs(:, k))
             end do
          end do
          do i = 1, size(model%plates)
-            if (model%plates(i)%group == 0) cycle
-            associate (nodes => mesh%groups(model%plates(i)%group)%nodes, plate => model%plates(i))
-               do k = 2, size(nodes)
-                  call join(nodes(1), nodes(k))
-               end do
+            associate (plate => model%plates(i))
+               if (plate%group == 0) cycle
+               call join(mesh%groups(plate%group)%nodes)
                if (.not. plate%turns) cycle
                body([plate%node, plate%turn_node]) = [plate%node, plate%turn_node]
-               call join(nodes(1), plate%node)
-               call join(nodes(1), plate%turn_node)
+               call join([mesh%groups(plate%group)%nodes(1), plate%node, plate%turn_node])
             end associate
          end do
       end associate
@@ -157,30 +144,26 @@ contains
          if (body(n) > 0) body(n) = root(n)
       end do
    contains
-      subroutine join(a, b)
-         integer, intent(in) :: a, b
-         integer :: first, second
+      subroutine join(nodes)
+         integer, intent(in) :: nodes(:)
+         integer :: j, first, second
 
-         if (body(a) == 0 .or. body(b) == 0) return
-         first = root(a)
-         second = root(b)
-         body(max(first, second)) = min(first, second)
+         do j = 2, size(nodes)
+            if (body(nodes(1)) == 0 .or. body(nodes(j)) == 0) cycle
+            first = root(nodes(1))
+            second = root(nodes(j))
+            body(max(first, second)) = min(first, second)
+         end do
       end subroutine join
 
+      !> The way is shortened for those who come after.
       integer function root(node)
          integer, intent(in) :: node
-         integer :: at, next
 
          root = node
          do while (body(root) /= root)
+            body(root) = body(body(root))
             root = body(root)
-         end do
-         ! The way is shortened for those who come after.
-         at = node
-         do while (body(at) /= root)
-            next = body(at)
-            body(at) = root
-            at = next
          end do
       end function root
    end function bodies_of
@@ -217,124 +200,80 @@ contains
       end do
    end function is_fixed
 
-   !> A rigid motion that the supports of a stage leave to a body, 0 if there is none. In axial symmetry that along z
-   !> alone strains nothing.
+   !> A rigid motion that the supports of a stage leave to a body, 0 if there is none. Supports hold along r or along z:
+   !> a body that both hold can but turn, unless nodes that are held along r differ in z, or those held along z in r.
+   !> In axial symmetry the motion along z alone strains nothing.
    function free_motion(model, stage, mine) result(motion)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       logical, intent(in) :: mine(:)   !< Nodes of the body.
       integer :: motion
-      real(wp) :: gram(MOTIONS, MOTIONS), middle(2), far, factor
-      logical :: open(MOTIONS)
-      integer :: i, k, n, pivot
+      ! Range of z of the nodes that are held along r, and of r of those held along z.
+      real(wp) :: low(2), high(2), near
+      logical :: turn_held
+      integer :: i, k
 
-      gram = 0.0_wp
-      associate (x => model%domain%mesh%x)
-         middle = [(sum(x(i, :), mask=mine)/count(mine), i=1, 2)]
-         far = max(maxval(abs(x(1, :) - middle(1)), mask=mine), maxval(abs(x(2, :) - middle(2)), mask=mine))
+      low = huge(low)
+      high = -huge(high)
+      turn_held = .false.
+      associate (x => model%domain%mesh%x, groups => model%domain%mesh%groups)
+         near = NEAR_SHARE*maxval([(maxval(x(i, :), mask=mine) - minval(x(i, :), mask=mine), i=1, 2)])
          do i = 1, size(model%fixes)
-            if (model%fixes(i)%field > DISPLACEMENTS .or. .not. acts_in(model%fixes(i)%stages, stage%name)) cycle
-            associate (nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-               do k = 1, size(nodes)
-                  if (.not. mine(nodes(k))) cycle
-                  if (model%fixes(i)%turns) then
-                     call hold([0.0_wp, 0.0_wp, 1.0_wp])
-                  else
-                     call hold(row_of(model%fixes(i)%field, nodes(k)))
-                  end if
+            associate (fix => model%fixes(i))
+               if (fix%field > DISPLACEMENTS .or. .not. acts_in(fix%stages, stage%name)) cycle
+               do k = 1, size(groups(fix%group)%nodes)
+                  associate (node => groups(fix%group)%nodes(k), field => fix%field)
+                     if (.not. mine(node)) cycle
+                     turn_held = turn_held .or. fix%turns
+                     if (fix%turns) cycle
+                     low(field) = min(low(field), x(3 - field, node))
+                     high(field) = max(high(field), x(3 - field, node))
+                  end associate
                end do
             end associate
          end do
          do i = 1, size(model%ties)
             do k = 1, size(model%ties(i)%pairs, 2)
-               associate (a => model%ties(i)%pairs(1, k), b => model%ties(i)%pairs(2, k))
-                  if (.not. mine(a)) cycle
-                  call hold(row_of(AT_U_R, a) - row_of(AT_U_R, b))
-                  call hold(row_of(AT_U_Z, a) - row_of(AT_U_Z, b))
+               associate (pair => model%ties(i)%pairs(:, k))
+                  if (mine(pair(1))) turn_held = turn_held .or. any(abs(x(:, pair(1)) - x(:, pair(2))) > near)
                end associate
             end do
          end do
          do i = 1, size(model%plates)
-            ! What is tied to a plate in the plane moves as any rigid body does.
+            ! What is tied to a plate that turns moves as any rigid body does.
             if (model%plates(i)%group == 0 .or. model%plates(i)%turns) cycle
-            associate (nodes => model%domain%mesh%groups(model%plates(i)%group)%nodes)
-               if (.not. mine(nodes(1))) cycle
-               do k = 2, size(nodes)
-                  call hold(row_of(AT_U_Z, nodes(1)) - row_of(AT_U_Z, nodes(k)))
-               end do
+            associate (nodes => groups(model%plates(i)%group)%nodes)
+               if (mine(nodes(1))) turn_held = turn_held .or. any(abs(x(1, nodes) - x(1, nodes(1))) > near)
             end associate
          end do
       end associate
-      if (model%domain%axisymmetric) then
-         motion = merge(0, AT_U_Z, gram(AT_U_Z, AT_U_Z) > 0.0_wp)
-         return
-      end if
-      ! Elimination with the largest pivot: what is left without one is free. A free rotation may leave the first row
-      ! that it is mixed with; the translations come first, for their names say more.
-      gram = gram/max(maxval(abs(gram)), tiny(1.0_wp))
-      open = .true.
-      do n = 1, MOTIONS
-         pivot = 1
-         do k = 1, MOTIONS
-            if (open(k) .and. (.not. open(pivot) .or. gram(k, k) > gram(pivot, pivot))) pivot = k
-         end do
-         if (gram(pivot, pivot) <= NOTHING) exit
-         open(pivot) = .false.
-         do k = 1, MOTIONS
-            if (.not. open(k)) cycle
-            factor = gram(k, pivot)/gram(pivot, pivot)
-            gram(k, :) = gram(k, :) - factor*gram(pivot, :)
-         end do
-      end do
-      motion = findloc(open, .true., dim=1)
-   contains
-      pure function row_of(field, node) result(row)
-         integer, intent(in) :: field, node
-         real(wp) :: row(MOTIONS)
-
-         row = 0.0_wp
-         row(field) = 1.0_wp
-         associate (at => (model%domain%mesh%x(:, node) - middle)/max(far, tiny(1.0_wp)))
-            row(TURN) = merge(-at(2), at(1), field == AT_U_R)
-         end associate
-      end function row_of
-
-      subroutine hold(row)
-         real(wp), intent(in) :: row(MOTIONS)
-         integer :: j
-
-         do j = 1, MOTIONS
-            gram(:, j) = gram(:, j) + row*row(j)
-         end do
-      end subroutine hold
+      motion = 0
+      if (.not. (turn_held .or. any(high > low + near) .or. model%domain%axisymmetric)) motion = TURN
+      if (low(AT_U_Z) > high(AT_U_Z)) motion = AT_U_Z
+      if (low(AT_U_R) > high(AT_U_R) .and. .not. model%domain%axisymmetric) motion = AT_U_R
    end function free_motion
 
-   !> A body by its groups: boundaries that belong to it, else groups of elements; where it is.
+   !> A body by groups that belong to it, and by where it is.
    function described(model, mine) result(text)
       type(model_t), intent(in) :: model
       logical, intent(in) :: mine(:)   !< Its nodes.
       character(:), allocatable :: text
-      integer :: i, n, kind
+      integer :: i, n
 
       text = ''
+      n = 0
       associate (mesh => model%domain%mesh)
-         do kind = 1, 3
-            n = 0
-            do i = 1, size(mesh%groups)
-               associate (group => mesh%groups(i))
-                  if (size(group%nodes) == 0 .or. group%name == 'all' .or. n == MOST_NAMES) cycle
-                  ! Boundaries, then what has elements, then groups that the body shares with others.
-                  if (kind == 1 .and. size(group%edges, 2) == 0) cycle
-                  if (kind < 3 .and. .not. all(mine(group%nodes))) cycle
-                  if (kind == 3 .and. .not. any(mine(group%nodes))) cycle
-                  text = text//trim(merge(', ', '  ', n > 0))//' '''//trim(group%name)//''''
-                  n = n + 1
-               end associate
-            end do
-            if (n > 0) exit
+         do i = 1, 2*size(mesh%groups)
+            associate (group => mesh%groups(mod(i - 1, size(mesh%groups)) + 1))
+               ! Boundaries first, then groups of elements.
+               if (size(group%edges, 2) > 0 .neqv. i <= size(mesh%groups)) cycle
+               if (size(group%nodes) == 0 .or. group%name == 'all' .or. n == MOST_NAMES) cycle
+               if (.not. all(mine(group%nodes))) cycle
+               text = text//trim(merge(', ', '  ', n > 0))//' '''//trim(group%name)//''''
+               n = n + 1
+            end associate
          end do
-         if (n > 1) text = 's'//text
-         if (n > 0) text = ' with the group'//text
+         if (n > 0) text = ' with the group'//trim(merge('s', ' ', n > 1))//text
          text = 'the body'//text//' ('//whole(count(mine))//' nodes from ('//short(minval(mesh%x(1, :), mask=mine))// &
                 ', '//short(minval(mesh%x(2, :), mask=mine))//') to ('//short(maxval(mesh%x(1, :), mask=mine))//', '// &
                 short(maxval(mesh%x(2, :), mask=mine))//') m)'

@@ -6,7 +6,7 @@ module checkpoints
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use run_state, only: run_t
-   use control_state, only: new_control_state, numbers_of, set_numbers, count_of_numbers
+   use control_state, only: control_state_t, new_control_state
    use degrees_of_freedom, only: dofs_t
    use output_tables, only: tables_t, flush_tables
    use model_types, only: model_t, gravity_at
@@ -14,10 +14,10 @@ module checkpoints
    use run_summary, only: new_peaks
    use sparsity_pattern, only: make_pattern
    use hdf5_file, only: h5_t, new_file, write_file, close_file, put, put_text, get, get_text, extent_of
-   use restart_files, only: restart_kind_t, put_origin, open_restart, codes_of
+   use restart_files, only: restart_kind_t, put_origin, open_restart
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
-   use scene_past, only: past_of_scene, first_difference
-   use texts, only: short, whole
+   use namelists, only: group_t
+   use texts, only: whole
    implicit none (type, external)
    private
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
@@ -27,7 +27,6 @@ module checkpoints
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
-   real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
    integer, parameter :: N_COUNTERS = 15, AT_FRAMES = 13, AT_PAIRS = 14, AT_SUDDEN = 15   !< Of the list of counters.
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
@@ -43,6 +42,7 @@ contains
       type(tables_t), intent(inout) :: tables
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
+      type(control_state_t) :: control
       logical :: good
 
       ! What the checkpoint counts on comes first.
@@ -52,8 +52,8 @@ contains
       call put_origin(file, KIND_OF_FILE)
       call put_text(file, 'scene', trim(model%name))
       call put_text(file, 'fingerprint', model%fingerprint)
-      call put(file, 'past', codes_of(past_of_scene(model%groups, model%amplitudes, run%at%stage, run%state%time)), &
-               '-', 'the scene so far, one key a line: the codes of its characters')
+      call put(file, 'groups', model%hashes, '-', &
+               'two numbers for every group of the scene, to find the one that differs')
       call put_text(file, 'origin', tables%origin)
       associate (s => run%state, c => run%at)
          call put(file, 'counters', counters_of(run, tables), '-', 'stage, step of it, cuts in force, good steps, '// &
@@ -83,7 +83,8 @@ contains
          'stress of the damping in proportion to the stiffness')
       if (size(model%points) > 0) call put(file, 'peaks', [tables%peaks%value, tables%peaks%time, &
          tables%peaks%dt], 'm, kPa, s', 'largest unknowns of the named points so far, when, and the step')
-      call put(file, 'control', numbers_of(run%control), '-', 'control of the time step: see control_state')
+      control = run%control
+      call exchange_control(file, control, .false.)
       if (allocated(run%constraint%dashpots)) call put(file, 'offset', run%constraint%offset, 'kN, m3/s', &
                                                       'flow that is subtracted, forces that hold the ground')
       if (size(tractions_of(run)) > 0) call put(file, 'friction', tractions_of(run), 'kPa', &
@@ -96,7 +97,7 @@ contains
    end subroutine write_checkpoint
 
    !> Puts a prepared run where the checkpoint was written. Fault EXIT_RESTART: no HDF5, no checkpoint, a damaged one,
-   !> one of another version, or of a scene with another past.
+   !> one of another version, or of another scene.
    subroutine read_checkpoint(path, model, run, tables, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
@@ -111,7 +112,7 @@ contains
 
       call open_restart(path, KIND_OF_FILE, file, fault)
       if (fault%code /= 0) return
-      call check_origin(path, model, file, fault)
+      call check_scene(path, model, file, fault)
       if (fault%code == 0) then
          counters = 0.0_wp
          call get(file, 'counters', counters)
@@ -145,7 +146,8 @@ contains
          if (allocated(run%damping_stress)) call get(file, 'damping_stress', run%damping_stress)
          if (allocated(run%constraint%dashpots)) call get(file, 'offset', run%constraint%offset)
          if (file%good) call take_tractions(file, run)
-         if (file%good) call take_control(file, model, run)
+         run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%contacts))
+         if (file%good) call exchange_control(file, run%control, .true.)
          if (file%good .and. counters(AT_PAIRS) > 0.5_wp) &
             call take_pairs(file, nint(counters(AT_PAIRS)), model%dofs, run)
          if (file%good) then
@@ -195,19 +197,83 @@ contains
       end associate
    end subroutine take_peaks
 
-   !> The control of the time step.
-   subroutine take_control(file, model, run)
+   !> Writes the control of the time step, or reads it, component by component. Names have no folder: HDF5 would store
+   !> the time at which it was made, and equal runs would leave different files.
+   subroutine exchange_control(file, control, reading)
       type(h5_t), intent(inout) :: file
-      type(model_t), intent(in) :: model
-      type(run_t), intent(inout) :: run
-      real(wp), allocatable :: list(:)
+      type(control_state_t), intent(inout) :: control   !< After new_control_state.
+      logical, intent(in) :: reading
 
-      if (.not. file%good) return
-      run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%contacts))
-      allocate (list(count_of_numbers(run%control)))
-      call get(file, 'control', list)
-      if (file%good) call set_numbers(list, run%control)
-   end subroutine take_control
+      associate (c => control%controller, m => control%memory)
+         call number('dt', c%dt, 's', 'next step')
+         call number('last_ratio', c%last_ratio, '-', 'error over allowance of the last accepted step')
+         call flag('held', c%held, 'the last attempt was rejected: the next step is no longer')
+         call number('t_sudden', control%t_sudden, 's', 'time of the last sudden change')
+         call whole_number('fresh', control%fresh, 'accepted steps since then')
+         call number('start_up', control%start_up, 's', 'span in which changes are expected to grow yet')
+         call whole_number('rejected', control%rejected, 'steps repeated because of their error, in the whole run')
+         call row('scale', control%scale, 'm, kPa', 'largest change of every field in the run')
+         call row('limits', control%limits, '-', 'steps by what kept them short')
+         call row('touching', control%touching, '-', 'whether a contact was closed at the start of the step')
+         call table('x_first', control%x_first, 'm, kPa', 'unknowns at the start of the stage')
+         call flag('rates_known', m%known, 'rates of the step before are known, with nothing sudden since')
+         call number('rates_dt', m%dt, 's', 'step from those rates to the present ones')
+         call table('rate', m%rate, 'm/s, kPa/s', 'rates of the unknowns one step back')
+         call row('s_rate', m%s_rate, '1/s', 'rates of saturation one step back')
+      end associate
+   contains
+      subroutine table(name, values, unit, meaning)
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout), contiguous :: values(:, :)
+
+         if (reading) then
+            call get(file, 'control_'//name, values)
+         else
+            call put(file, 'control_'//name, values, unit, meaning)
+         end if
+      end subroutine table
+
+      subroutine row(name, values, unit, meaning)
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout), contiguous :: values(:)
+
+         if (reading) then
+            call get(file, 'control_'//name, values)
+         else
+            call put(file, 'control_'//name, values, unit, meaning)
+         end if
+      end subroutine row
+
+      subroutine number(name, value, unit, meaning)
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout) :: value
+         real(wp) :: values(1)
+
+         values = value
+         call row(name, values, unit, meaning)
+         value = values(1)
+      end subroutine number
+
+      subroutine whole_number(name, value, meaning)
+         character(*), intent(in) :: name, meaning
+         integer, intent(inout) :: value
+         real(wp) :: as_real
+
+         as_real = real(value, wp)
+         call number(name, as_real, '-', meaning)
+         value = nint(as_real)
+      end subroutine whole_number
+
+      subroutine flag(name, value, meaning)
+         character(*), intent(in) :: name, meaning
+         logical, intent(inout) :: value
+         integer :: as_count
+
+         as_count = merge(1, 0, value)
+         call whole_number(name, as_count, meaning)
+         value = as_count == 1
+      end subroutine flag
+   end subroutine exchange_control
 
    !> The matrix with all the room that contacts have asked for: its ordering, and so every digit, depends on it.
    subroutine take_pairs(file, pairs, dofs, run)
@@ -225,70 +291,53 @@ contains
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine take_pairs
 
-   !> Refuses files of another scene.
-   subroutine check_origin(path, model, file, fault)
+   !> Refuses a checkpoint of another scene: fault EXIT_RESTART names the first group that differs.
+   subroutine check_scene(path, model, file, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
       type(h5_t), intent(inout) :: file
       type(fault_t), intent(inout) :: fault
-      character(64) :: theirs
-      character(:), allocatable :: difference
-      real(wp) :: counters(N_COUNTERS), stage(4)
-      integer :: number
-      logical :: differs
+      integer, allocatable :: theirs(:)
+      character(:), allocatable :: there
+      integer :: g, groups
 
-      theirs = get_text(file, 'fingerprint')
-      if (theirs == model%fingerprint) return
-      ! Another scene may go on from here if it says the same about the past.
-      counters = 0.0_wp
-      stage = 0.0_wp
-      call get(file, 'counters', counters)
-      call get(file, 'stage', stage)
-      if (.not. file%good .or. .not. possible(counters, huge(0))) then
+      if (get_text(file, 'fingerprint') == model%fingerprint) return
+      allocate (theirs(extent_of(file, 'groups')))
+      call get(file, 'groups', theirs)
+      if (size(theirs) == 0 .or. .not. file%good) then
          call raise(fault, EXIT_RESTART, path//DAMAGED)
          return
       end if
-      number = nint(counters(1))
-      difference = ''
-      if (number <= size(model%stages)) difference = first_difference(past_of_scene(model%groups, model%amplitudes, &
-                                                                                    number, stage(1)), past_in(file))
-      differs = difference /= ''
-      if (number > size(model%stages)) then
-         call raise(fault, EXIT_RESTART, foreign()//'it stands in stage '//whole(number)//', and the scene has '// &
-                    whole(size(model%stages))//'.')
-      else if (differs) then
-         call raise(fault, EXIT_RESTART, foreign()//difference//'. Groups, keys, values and files must be those of '// &
-                    'the run, but for threads and checkpoint_*; what may differ is the duration of the stage under '// &
-                    'way ('//trim(model%stages(number)%name)//'), later stages with the &fix and &load '// &
-                    'of these alone, and histories after '//short(stage(1))//' s.')
-      else if (stage(2) + model%stages(number)%duration < stage(1)*(1 - ROUNDING)) then
-         call raise(fault, EXIT_RESTART, foreign()//'the run stands at '//short(stage(1))//' s, after the end of '// &
-                    'stage '//trim(model%stages(number)%name)//' at '// &
-                    short(stage(2) + model%stages(number)%duration)//' s.')
+      groups = size(model%groups)
+      do g = 1, min(groups, size(theirs)/2)
+         if (any(model%hashes(2*g - 1:2*g) /= theirs(2*g - 1:2*g))) exit
+      end do
+      there = whole(size(theirs)/2)
+      if (g > groups) then
+         call different(whole(groups)//' groups are here, and '//there//' were in the scene of the checkpoint')
+      else if (2*g > size(theirs)) then
+         call different('the checkpoint has no '//named(model%groups(g))//', for its scene ended after '//there// &
+                        ' groups')
+      else
+         call different(named(model%groups(g))//' is another group, or has another key, value or file, here than '// &
+                        'in the checkpoint')
       end if
    contains
-      function foreign() result(text)
+      subroutine different(text)
+         character(*), intent(in) :: text
+
+         call raise(fault, EXIT_RESTART, path//' belongs to another scene ('//trim(get_text(file, 'scene'))// &
+                    '): '//text//'. Groups, keys, values and files must be those of the run, but for threads, '// &
+                    'goals and checkpoint_*; start a changed scene from its beginning.')
+      end subroutine different
+
+      function named(group) result(text)
+         type(group_t), intent(in) :: group
          character(:), allocatable :: text
 
-         text = path//' belongs to another scene ('//trim(get_text(file, 'scene'))//', fingerprint '// &
-                trim(theirs)//', here '//model%fingerprint//'): '
-      end function foreign
-   end subroutine check_origin
-
-   !> The past that a checkpoint contains, see past_of_scene.
-   function past_in(file) result(text)
-      type(h5_t), intent(inout) :: file
-      character(:), allocatable :: text
-      integer, allocatable :: codes(:)
-      integer :: i
-
-      allocate (codes(extent_of(file, 'past')))
-      call get(file, 'past', codes)
-      allocate (character(size(codes)) :: text)
-      do i = 1, size(codes)
-         text(i:i) = achar(iand(codes(i), 255))
-      end do
-   end function past_in
+         text = '&'//trim(group%name)//' in line '//whole(group%line)
+      end function named
+   end subroutine check_scene
 
    !> Tractions of all contacts with friction, one behind the other [kPa].
    pure function tractions_of(run) result(tractions)

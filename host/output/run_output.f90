@@ -8,7 +8,7 @@ module run_output
    use folder_lock, only: lock_folder, unlock_folder
    use interrupts, only: interrupted, EXIT_INTERRUPTED
    use hdf5_file, only: HAS_HDF5
-   use texts, only: short, whole
+   use texts, only: short
    use checkpoints, only: write_checkpoint, CHECKPOINT
    use warnings, only: print_warning
    use field_files, only: write_frame
@@ -50,8 +50,7 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (.not. HAS_HDF5 .and. (model%checkpoint_steps > 0 .or. model%checkpoint_seconds > 0.0_wp .or. &
-                                model%checkpoint_end)) then
+      if (.not. HAS_HDF5 .and. (model%checkpoint_steps > 0 .or. model%checkpoint_seconds > 0.0_wp)) then
          call raise(fault, EXIT_INPUT, 'This mud_host was built without HDF5: it writes no checkpoints; leave '// &
                     'checkpoint_steps and checkpoint_seconds out, or install HDF5 and build anew.')
          return
@@ -105,7 +104,6 @@ contains
       if (model%checkpoint_steps > 0) checkpoint = mod(run%steps, model%checkpoint_steps) == 0
       if (model%checkpoint_seconds > 0.0_wp) &
          checkpoint = clock() - self%last_checkpoint >= model%checkpoint_seconds .or. checkpoint
-      if (model%checkpoint_end .and. report%last) checkpoint = report%stage == size(model%stages) .or. checkpoint
       if (interrupted()) checkpoint = HAS_HDF5 .or. checkpoint
       if (checkpoint) then
          call write_checkpoint(model, run, self%tables, fault)

@@ -5,7 +5,7 @@ module effect_indicators
    use kinds, only: wp
    use energy_ledger, only: kinetic_energy
    use model_types, only: model_t
-   use unknown_fields, only: DISPLACEMENTS, AT_P_W
+   use unknown_fields, only: AT_P_W
    use porous_domain, only: state_t, is_present
    use generalised_alpha, only: STATIC, DYNAMIC
    use texts, only: whole

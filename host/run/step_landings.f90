@@ -15,7 +15,7 @@ module step_landings
    implicit none (type, external)
    private
    public :: next_time, end_of_given
-   public :: is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, CHORD_SHARE
+   public :: is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.

@@ -8,30 +8,45 @@ module scene_fingerprint
    use texts, only: lower_case
    implicit none (type, external)
    private
-   public :: fingerprint_of, hash_t, add_text, text_of_hash, with_fingerprints, is_free
+   public :: fingerprint_of, hashes_of
 
    integer, parameter :: BLOCK = 65536
    ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
    integer(int64), parameter :: PRIMES(2) = [2147483647_int64, 2147483629_int64], BASES(2) = [65599_int64, 31337_int64]
-   character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds', &
-                                    'checkpoint_end', 'goals']
+   !> Keys that change no result.
+   character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds', 'goals']
 
-   type :: hash_t
-      integer(int64) :: parts(2) = 1
-   end type hash_t
 contains
    !> Fingerprint of groups as 16 hexadecimal digits. A file that cannot be read counts by its name alone.
    function fingerprint_of(groups) result(text)
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       character(FINGERPRINT_LENGTH) :: text
-      type(hash_t) :: hash
+
+      write (text, '(2z8.8)') hash_of(groups)
+   end function fingerprint_of
+
+   !> Two numbers for every group, which differ where the group does.
+   function hashes_of(groups) result(hashes)
+      type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
+      integer :: hashes(2*size(groups))
+      integer :: g
+
+      do g = 1, size(groups)
+         hashes(2*g - 1:2*g) = int(hash_of(groups(g:g)))
+      end do
+   end function hashes_of
+
+   function hash_of(groups) result(hash)
+      type(group_t), intent(in) :: groups(:)
+      integer(int64) :: hash(2)
       integer :: g, i, k
 
+      hash = 1
       do g = 1, size(groups)
          call add_text('&'//trim(groups(g)%name), hash)
          do i = 1, groups(g)%count
             associate (item => groups(g)%entries(i))
-               if (is_free(item%key)) cycle
+               if (any(FREE == lower_case(item%key))) cycle
                call add_text(' '//lower_case(trim(item%key)), hash)
                do k = 1, item%count
                   call add_text('='//trim(item%values(k)), hash)
@@ -40,60 +55,23 @@ contains
             end associate
          end do
       end do
-      text = text_of_hash(hash)
-   end function fingerprint_of
-
-   !> Whether a key changes no result.
-   pure logical function is_free(key)
-      character(*), intent(in) :: key
-
-      is_free = any(FREE == lower_case(key))
-   end function is_free
-
-   !> A hash as 16 hexadecimal digits.
-   pure function text_of_hash(hash) result(text)
-      type(hash_t), intent(in) :: hash
-      character(FINGERPRINT_LENGTH) :: text
-
-      write (text, '(2z8.8)') hash%parts
-   end function text_of_hash
-
-   !> Groups with a fingerprint of the files that they name in place of the names, so that nothing has to be read again.
-   function with_fingerprints(groups) result(copies)
-      type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
-      type(group_t), allocatable :: copies(:)
-      type(hash_t) :: hash
-      integer :: g, i
-
-      copies = groups
-      do g = 1, size(groups)
-         do i = 1, groups(g)%count
-            associate (item => groups(g)%entries(i))
-               if (lower_case(item%key) /= 'file') cycle
-               hash = hash_t()
-               call add_text(trim(item%values(1)), hash)
-               call add_file(trim(groups(g)%file), trim(item%values(1)), hash)
-               copies(g)%entries(i)%values(1) = text_of_hash(hash)
-            end associate
-         end do
-      end do
-   end function with_fingerprints
+   end function hash_of
 
    !> Continues a hash by the characters of a text.
    pure subroutine add_text(text, hash)
       character(*), intent(in) :: text
-      type(hash_t), intent(inout) :: hash
+      integer(int64), intent(inout) :: hash(2)
       integer :: i
 
       do i = 1, len(text)
-         hash%parts = mod(hash%parts*BASES + iachar(text(i:i)) + 1, PRIMES)
+         hash = mod(hash*BASES + iachar(text(i:i)) + 1, PRIMES)
       end do
    end subroutine add_text
 
    !> Contents of a file, its path seen from the scene. One that cannot be read is refused elsewhere.
    subroutine add_file(scene, path, hash)
       character(*), intent(in) :: scene, path
-      type(hash_t), intent(inout) :: hash
+      integer(int64), intent(inout) :: hash(2)
       character(:), allocatable :: whole_path
       character(BLOCK) :: block_of
       integer :: unit, status, length, left

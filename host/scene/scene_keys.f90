@@ -145,7 +145,6 @@ contains
                    'checkpoint.h5 after every so many steps; 0: none')
       call k%number('checkpoint_seconds', scene%checkpoint_seconds, ZERO, BIG, &
                     'checkpoint.h5 after so much wall time [s]; 0: none')
-      call k%flag('checkpoint_end', scene%checkpoint_end, 'no|yes', 'yes', 'checkpoint.h5 when the last stage ends')
    end subroutine take_scene
 
    subroutine take_mesh(k, scene)

@@ -5,7 +5,7 @@ module scene_reader
    use key_table, only: key_table_t
    use namelists, only: group_t, read_groups
    use exit_codes, only: EXIT_GROUP
-   use scene_fingerprint, only: fingerprint_of, with_fingerprints
+   use scene_fingerprint, only: fingerprint_of, hashes_of
    use scene_tolerances, only: ask_key
    use scene_keys, only: check_keys, make_lists, take_group
    use effect_switches, only: remove_effects
@@ -41,7 +41,8 @@ contains
       if (fault%code /= 0) return
       scene%file = file
       scene%fingerprint = fingerprint_of(groups)
-      scene%groups = with_fingerprints(groups)
+      scene%hashes = hashes_of(groups)
+      scene%groups = groups
       call make_lists(scene)
       ! &scene says how others are read.
       table%group = groups(findloc([(groups(i)%name, i=1, size(groups))], 'scene', dim=1))

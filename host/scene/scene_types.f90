@@ -185,7 +185,8 @@ module scene_types
       character(LENGTH) :: file = ''
       character(NAME_LENGTH) :: name = ''
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
-      type(group_t), allocatable :: groups(:)        !< As they were read, files by their contents.
+      integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
+      type(group_t), allocatable :: groups(:)        !< As they were read.
       logical :: axisymmetric = .true., linear_pressures = .true.
       integer :: fields = WITH_U, quadrature = 6, threads = 0
       real(wp) :: gravity = 0.0_wp
@@ -197,7 +198,6 @@ module scene_types
       character(LENGTH), allocatable :: goals(:)     !< Answers that mud_study measures; a run takes no notice.
       integer :: checkpoint_steps = 0
       real(wp) :: checkpoint_seconds = 0.0_wp
-      logical :: checkpoint_end = .false.
       character(LENGTH), allocatable :: without(:)   !< Effects that are taken out by hand.
       character(LENGTH), allocatable :: absent(:)    !< Those of them that the scene did not have.
       type(scene_mesh_t) :: mesh

@@ -16,7 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
-   public :: note_stagnation, is_in_vain, residual_norms, forces_of_fields
+   public :: note_stagnation, is_in_vain
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
@@ -236,17 +236,6 @@ contains
          if (assembly%with_change) own = assembly%change(unknown)
       end function own
    end function body_scale
-
-   !> Norms of the forces in each field, never zero. [kN, m3/s]
-   pure function forces_of_fields(dofs, constraint, assembly) result(forces)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      type(assembly_t), intent(in) :: assembly
-      real(wp) :: forces(FIELDS), s(FIELDS), floor(FIELDS)
-
-      call add_scales(dofs, constraint, assembly, .false., s, floor)
-      forces = max(sqrt(s), sqrt(floor), NO_FORCE)
-   end function forces_of_fields
 
    !> Norms of a residual over the unknowns that are free, displacements together. [kN, m3/s]
    pure function residual_norms(dofs, constraint, rhs) result(norms)

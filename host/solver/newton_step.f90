@@ -7,9 +7,8 @@ module newton_step
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns, &
                                  rounding_of_ties
-   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, &
-                          linear_tolerance, rounding_in, residual_norms, forces_of_fields, &
-                          BY_FORCES, BY_CHANGE
+   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
+                          rounding_in, BY_FORCES, BY_CHANGE
    use dashpots, only: add_dashpots
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first

@@ -215,6 +215,10 @@ def test_uninterrupted_run():
     check("killed on the way", killed)
     with h5py.File(half / "checkpoint.h5") as file:
         step = int(file["counters"][4])
+        kept = {name: dict(item.attrs) for name, item in file.items() if name.startswith("control_")}
+        check("what the control of the steps carries is stored by name, with its unit and meaning",
+              {"control_dt", "control_held", "control_t_sudden", "control_x_first", "control_rate"} <= set(kept)
+              and all(said["unit"] and said["description"] for said in kept.values()), kept)
     check("checkpoint on the way", 0 < step < len((whole / "ledger.csv").read_bytes().splitlines()) - 1, step)
 
     shutil.copy(half / "checkpoint.h5", keep)
@@ -278,6 +282,7 @@ def test_uninterrupted_run():
         ("counter that is no number", foreign_counters(0, float("nan")), text, "damaged"),
         ("no counters", lambda: altered(lambda file: file.__delitem__("counters")), text, "damaged"),
         ("missing entry", lambda: altered(drop), text, "damaged"),
+        ("no next step", lambda: altered(lambda file: file.__delitem__("control_dt")), text, "damaged"),
         ("no times of fields", lambda: altered(lambda file: file.__delitem__("frames")), text, "damaged"),
         ("other extent", lambda: altered(shorten), text, "damaged"),
         ("other scene", lambda: bad.write_bytes(raw()), other, "another scene"),
@@ -360,7 +365,7 @@ def test_uninterrupted_run():
     copy.write_text((root / "drivers/materials/toyoura.nml").read_text())
     scene.write_text(re.sub(r"file = '.*toyoura.nml'", "file = 'sand.nml'", text))
     done = run(scene, half, "--quiet", "--restart", keep)
-    check("other material file", done.returncode == 17 and "&mud 1 (sand): file is " in done.stderr, done.stderr)
+    check("other material file", done.returncode == 17 and "&mud in line " in done.stderr, done.stderr)
     scene.write_text(text)
 
     full = work / "full"

@@ -2,7 +2,6 @@
 """What people read from a run of mud_host: reactions, flow and thrust of every group against statics and Darcy; loads
 and supports that change with z; retention from files; a run that goes on with more stages or for longer."""
 import os
-import shutil
 import subprocess
 
 import numpy as np
@@ -269,44 +268,3 @@ def test_a_table_of_3001_pairs_is_the_curve():
         (work / "bad.txt").write_text("0 1\n10 1.5\n")
         done, _ = start(column.replace(old, law), f"refused_{name}")
         check(f"refused: {name}", done.returncode == 2 and words in done.stderr, done.stderr)
-
-    # A run goes on: further stages with loads of their own give the bytes of the run that had them from the beginning.
-    first = block("u-p_w", 10, analysis="quasi_static", dt=0.125, more="checkpoint_end = 'yes'") + HELD + (
-        "&history name = 'h' times = 0, 1 values = 0, 1 /\n&initial p_w = 30 p_w_slope = -10 /\n"
-        "&fix group = 'top' field = 'p_w' /\n&load group = 'top' kind = 'pressure' value = 10 history = 'h' /\n")
-    more = first.replace("times = 0, 1 values = 0, 1", "times = 0, 1, 2 values = 0, 1, 3") + (
-        "&stage name = 'more' analysis = 'quasi_static' duration = 1 dt = 0.25 /\n"
-        "&load group = 'right' kind = 'pressure' value = 3 stages = 'more' /\n"
-        "&fix group = 'right' field = 'p_w' hold = 'yes' stages = 'more' /\n")
-    at_once = run(more.replace("checkpoint_end", "checkpoint_steps = 8 checkpoint_end"), "at_once")
-    begun = run(first, "begun")
-    shutil.copytree(begun, work / "kept")
-    gone_on = run(more, "begun", "--restart", begun / "checkpoint.h5")
-    names = {p.name for folder in (at_once, gone_on) for p in folder.iterdir()} - {"mesh.h5", "checkpoint.h5"}
-    moved = [n for n in sorted(names) if not (at_once / n).exists() or not (gone_on / n).exists()
-             or (at_once / n).read_bytes() != (gone_on / n).read_bytes()]
-    check("further stages: the bytes of the run that had them", "reactions_more.csv" in names and not moved, moved)
-    again = run(more.replace("duration = 1 dt = 0.25", "duration = 2 dt = 0.25"), "begun", "--restart",
-                begun / "checkpoint.h5")
-    check("and once more, for longer", abs(last(again, "histories.csv")["time"] - 3) < 1e-12,
-          last(again, "histories.csv")["time"])
-    longer = first.replace("duration = 1", "duration = 2")
-    shutil.copytree(work / "kept", work / "longer")
-    whole, part = run(longer, "whole"), run(longer, "longer", "--restart", work / "longer/checkpoint.h5")
-    a, b = (np.stack([*tables.columns(f / "histories.csv").values()], axis=1) for f in (whole, part))
-    check("a longer stage: the same to rounding", a.shape == b.shape
-          and (np.abs(a - b).max(0) <= 1e-8 * np.abs(a).max(0) + 1e-12).all(), np.abs(a - b).max(0))
-
-    # What is past must not change: a value, a history before the moment, a stage cut off before it.
-    for name, old, new, words in (
-            ("value", "value = 10", "value = 11", "later stages"),
-            ("history", "values = 0, 1,", "values = 0.1, 1,", "later stages"),
-            ("end of a history", "times = 0, 1, 2 values = 0, 1, 3", "times = 0, 2 values = 0, 3", "later stages"),
-            ("mesh", "r_cells = 2", "r_cells = 3", "later stages"),
-            ("stage", "duration = 1 dt = 0.125", "duration = 0.5 dt = 0.125", "after the end of stage s")):
-        text = more.replace(old, new)
-        check(f"refused past, {name}: changed", text != more)
-        folder = work / f"past_{name.replace(' ', '_')}"
-        shutil.copytree(work / "kept", folder)
-        done, _ = start(text, folder.name, "--restart", folder / "checkpoint.h5")
-        check(f"refused past, {name}", done.returncode == 17 and words in done.stderr, done.stderr)

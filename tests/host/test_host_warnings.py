@@ -199,6 +199,10 @@ def test_the_regions_are_there():
         11, "no group 'corner'")
     refused("a body that turns about a line of supports", FREE + BOTTOM.replace("u_z", "u_r") + BOTTOM.replace(
         "u_z", "u_r"), 13, "against moving along z (y)")
+    # Held along r at one z and along z at one r it turns about the corner where the two lines meet.
+    pinned = FREE + BOTTOM.replace("u_z", "u_r") + LEFT.replace("u_r", "u_z")
+    refused("a body that turns about a corner", pinned, 13, "against turning; add a &fix of u_z or u_r")
+    check("held at a third line it does not turn", warnings(pinned + LEFT, "--check") == [], pinned)
     refused("a plate without a contact", FREE + LEFT + BOTTOM + "&plate name = 'p' r = 0, 1 z = 2 mass = 1 /\n", 13,
             "nothing holds the plate 'p'")
     # Two plates on one boundary would be one body with one mass: that of one of them would be lost.

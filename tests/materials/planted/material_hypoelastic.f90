@@ -45,7 +45,6 @@ contains
       made%poisson = number_of(HYPOELASTIC_KEYS, group, 'poisson')
       made%exact_tangent = .true.
       made%state_names = [character(NAME_LENGTH) :: 'void_ratio', 'saturation']
-      made%state_units = [character(NAME_LENGTH) :: '1', '1']
       made%n_state = size(made%state_names)
       allocate (law, source=made)
    end subroutine new_hypoelastic
