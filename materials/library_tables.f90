@@ -11,8 +11,7 @@ module library_tables
    implicit none (type, external)
    private
    public :: library_version, property_count, property_index, property_name, property_unit, property_origin, &
-             property_meaning, property_option, property_range, range_for, state_count, statev_index, statev_name, &
-             statev_unit
+             property_meaning, property_option, property_range, range_for, state_count, statev_index, statev_name
 
    integer, parameter :: BUFFER = 600
 contains
@@ -98,14 +97,6 @@ contains
 
       text = table_text(MUD_STATEV, place, MUD_NAME)
    end function statev_name
-
-   !> Unit of the entry of STATEV at a place from 1. Empty where there is none.
-   function statev_unit(place) result(text)
-      integer, intent(in) :: place
-      character(:), allocatable :: text
-
-      text = table_text(MUD_STATEV, place, MUD_UNIT)
-   end function statev_unit
 
    function table_text(list, place, field) result(text)
       integer(c_int), intent(in) :: list, field
