@@ -371,7 +371,7 @@ def test_effects_are_kept_and_dropped_as_they_matter():
         table = {row["effect"]: row for row in tables.rows(folder / "effects.csv")}
         for effect, wanted in [(x, "on") for x in scene.keeps] + [(x, "off") for x in scene.drops]:
             check(f"{name}: {effect} is {wanted}", table.get(effect, {}).get("on") == wanted, table.get(effect))
-    # The last scene once more, and one with a pilot that the host refuses: what is found says the same as what was made.
+    # Two scenes once more, one with a pilot that the host refuses: what is found says the same as what was made.
     for name in ("stiff_layer_that_hides_seepage", "far_soil"):
         before = (work / f"study_{name}/effects.csv").read_bytes()
         again = subprocess.run([sys.executable, "-m", "mud.study", "effects", work / f"{name}.nml", "--share", "inf",
