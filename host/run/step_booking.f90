@@ -10,6 +10,7 @@ module step_booking
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
    use run_state, only: run_t
+   use water_balance, only: book_water
    implicit none (type, external)
    private
    public :: book_accepted_step
@@ -36,6 +37,7 @@ contains
       run%ledger%friction = run%ledger%friction + dissipated
       call book_creation(scheme, model%stages(run%at%stage)%tolerance, model%dofs, run%assembly%scale, &
                          run%next%x - run%state%x, run%ledger)
+      call book_water(model%dofs, scheme, run%constraint, run%system%reaction, run%water)
       if (scheme%kind == DYNAMIC) call count_creation(model%stages(run%at%stage)%created_energy, run%ledger)
    end subroutine book_accepted_step
 

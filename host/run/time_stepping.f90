@@ -25,6 +25,7 @@ module time_stepping
    use contact_alarm, only: warn_of_penetration, warn_of_overlap
    use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
    use unknown_fields, only: DISPLACEMENTS
+   use water_balance, only: water_t, warn_of_missing_water
    use scene_types, only: stage_t
    use texts, only: short, whole
    implicit none (type, external)
@@ -51,6 +52,8 @@ contains
       do i = max(1, run%at%stage), size(model%stages)
          call run_stage(model, i, run, fault, observer)
          if (warns(observer)) call warn_of_created_energy(model%stages(i), run%ledger)
+         if (warns(observer)) call warn_of_missing_water(model%stages(i), run%water)
+         run%water = water_t()
          t0 = clock()
          ! Also after a failure, which is reported, not what its last output may meet.
          last = fault_t()
