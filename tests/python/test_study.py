@@ -352,8 +352,12 @@ def test_interrupted_studies_go_on():
         "1e-4",
         "--output",
         work / "interrupted",
+        "--budget",
+        "60",
     ]
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    # Whoever runs this in the background may have it ignore an interrupt.
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT,
+                               preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
     while len(list((work / "interrupted").glob("*/run.json"))) < 4 and process.poll() is None:
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
