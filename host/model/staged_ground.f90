@@ -146,6 +146,7 @@ contains
          if (fault%code /= 0) return
          if (what == '&absorbing' .and. size(stages) == 0) return
          first = 0
+         k = 0
          do s = 1, size(model%stages)
             if (.not. acts_in(stages, model%stages(s)%name)) cycle
             sides = sides_with_ground(model, group, s)
@@ -154,7 +155,7 @@ contains
             if (k > 0) exit
             if (first == 0) first = s
          end do
-         if (s > size(model%stages)) return
+         if (k == 0) return
          if (any(sides(k) == [ON_LEFT, ON_RIGHT])) then
             wrong = 'has its ground on the other side than in stage '''//trim(model%stages(first)%name)//''''
             remedy = 'give one '//what//' for each of the stages.'
