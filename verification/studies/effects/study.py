@@ -28,7 +28,8 @@ def rows_of(scene, build, folder):
     if done.returncode:
         raise RuntimeError(f"{scene.name}: exit code {done.returncode}. {done.stderr.strip()}")
     wanted = {**dict.fromkeys(scene.keeps, "on"), **dict.fromkeys(scene.drops, "off")}
-    return [(scene.name, *(r[n] for n in NAMES[1:-1]), wanted.get(r["effect"], ""))
+    # Remarks quote sentences of runs; where they were run is no result.
+    return [(scene.name, *(r[n].replace(f"{folder}/", "") for n in NAMES[1:-1]), wanted.get(r["effect"], ""))
             for r in tables.rows(pathlib.Path(folder) / "effects.csv")]
 
 
