@@ -137,7 +137,7 @@ contains
       end subroutine stop_early
    end subroutine next_increment
 
-   !> The cycle that a way belongs to: ways 2n - 1 and 2n make cycle n, the way back to the centre is of the last one.
+   !> The cycle that a way belongs to: ways 2n - 1 and 2n make cycle n; the return to the centre belongs to the last.
    !> 0: the stage has no cycles.
    pure integer function cycle_of(stage, way)
       type(stage_t), intent(in) :: stage

@@ -177,7 +177,7 @@ def test_strain_cycles_turn_at_the_amplitude():
 
 
 def test_a_reversal_belongs_to_the_cycle_that_it_ends():
-    # Rows at reversals alone: +A and -A carry the number of their cycle, the way back that of the last one.
+    # Rows at reversals alone: +A and -A carry the number of their cycle, the return that of the last one.
     far = ", output_interval = 1e6"
     for stage, name, size in (("control = 'drained', cycle_by = 'eps_a', amplitude = 5e-4", "eps_a", 5e-4),
                               ("control = 'undrained', cycle_by = 'q', amplitude = 12, increment = 1e-5", "q", 12)):
