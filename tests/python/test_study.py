@@ -421,11 +421,14 @@ def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
         "no key says inertia in load, relative_acceleration, nothing in" in done.stderr,
         done.stderr,
     )
-    done, _, _ = study("effects", strip(40), "short")
-    check("one where the run is short", "1 pilots" in done.stdout and "less than 30 s" in done.stdout, done.stdout)
-    done, _, folder = study("effects", strip(80), "long")
+    # What is short depends on the machine: the same run is below what it is quoted at, and above half of that.
+    done, _, _ = study("effects", strip(80), "short", "--least-run", "1e4")
+    told = re.search(r"quoted at (\S+) s of processor time, less than 10000 s", done.stdout)
+    check("one where the run is short", "1 pilots" in done.stdout and told, done.stdout)
+    least = float(told.group(1)) / 2
+    done, _, folder = study("effects", strip(80), "long", "--least-run", str(least))
     spent, quote = map(float, re.search(r"pilots, (\S+) s .* quoted at (\S+) s", done.stdout).groups())
-    check("a twentieth of a long one", quote > 30 and spent <= quote / 20, (spent, quote))
+    check("a twentieth of a long one", quote > least and spent <= quote / 20, (spent, quote))
     table = {row["effect"]: row["on"] for row in tables.rows(folder / "effects.csv")}
     check(
         "water stays, suction and inertia go",

@@ -13,7 +13,7 @@ import sys
 
 from ..errors import InputError
 from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
-from .effects import SHARE, Effects, Silent
+from .effects import LEAST_RUN, SHARE, Effects, Silent
 from .runs import BudgetUsedUp, Failed, Scene
 from .pictures import accuracy_picture, effects_picture, price_picture
 from .switches import plain, settled, write_scene
@@ -49,7 +49,14 @@ def parser() -> argparse.ArgumentParser:
                 default=SHARE,
                 metavar="S",
                 help="of the run that pilots may cost, in "
-                f"processor time; default {SHARE:g}; inf: any, also of runs below 30 s",
+                f"processor time; default {SHARE:g}; inf: any, also of short runs",
+            )
+            one.add_argument(
+                "--least-run",
+                type=float,
+                default=LEAST_RUN,
+                metavar="SECONDS",
+                help=f"processor time of the run below which there are no pilots; default {LEAST_RUN:g}",
             )
         if name in ("accuracy", "run"):
             one.add_argument(
@@ -161,7 +168,7 @@ def effects(scene: Scene, args) -> int:
 
 def reduced(scene: Scene, args) -> pathlib.Path:
     """The scene without what does not matter, as a file; the scene as it stands where no pilot may be run."""
-    study = Effects(scene, args.share)
+    study = Effects(scene, args.share, args.least_run)
     path = scene.folder / "reduced.nml"
     scene.folder.mkdir(parents=True, exist_ok=True)
     try:

@@ -66,8 +66,8 @@ class Pilot:
 class Effects:
     """The search for what a scene calls for."""
 
-    def __init__(self, scene: Scene, share: float = SHARE):
-        self.scene, self.share = scene, share
+    def __init__(self, scene: Scene, share: float = SHARE, least_run: float = LEAST_RUN):
+        self.scene, self.share, self.least_run = scene, share, least_run
         self.folder = scene.path.parent
         self.given = plain(scene.groups)
         self.tolerance = float(one(self.given).get("effects_tolerance", TOLERANCE))
@@ -87,7 +87,7 @@ class Effects:
         if self.share == math.inf:
             return math.inf
         # Until the first pilot has told what the run costs, the share of the least that is worth it.
-        return self.share * max(self.quote, LEAST_RUN) - self.spent
+        return self.share * max(self.quote, self.least_run) - self.spent
 
     def pilot(self, reading, level, most=math.inf, ends=None) -> Pilot:
         """A pilot; Failed where it fails or takes more than it may."""
@@ -208,8 +208,8 @@ class Effects:
         if given:
             steps = max(s["duration"] / s["dt"] for s in given) / max(1, pilot.steps)
         self.quote = pilot.processor * self.cells**CELLS * max(steps, 1.0)
-        if self.share != math.inf and self.quote < LEAST_RUN:
-            raise Silent(f"the run is quoted at {self.quote:.2g} s of processor time, less than {LEAST_RUN:g} s")
+        if self.share != math.inf and self.quote < self.least_run:
+            raise Silent(f"the run is quoted at {self.quote:.2g} s of processor time, less than {self.least_run:g} s")
 
     def _ends(self, reading, pilot, level):
         """Keys of every stage that prescribe the steps which a pilot took."""
