@@ -1,10 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> What the process asks of its libraries: the fronts of a factorisation are too small to be worth threads of the BLAS,
-!> and memory that every factorisation needs anew is kept. Both settings are
-!> optional: a BLAS or C library without them runs unchanged.
+!> Settings that the process asks of its libraries: the fronts of a factorisation are too small to be worth threads of
+!> the BLAS; memory that every factorisation needs anew is kept; threads that have nothing to do wait asleep, since one
+!> thread works for long between the parallel parts of a step. Every setting is optional: libraries without it run
+!> unchanged.
 module process_settings
-   use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_null_ptr, c_null_char, c_associated, c_f_procpointer
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_funptr, c_loc, c_ptr, c_null_ptr, c_null_char, &
+                                          c_associated, c_f_procpointer
    use dynamic_loader, only: dlsym
+   use omp_lib, only: omp_get_max_threads
    implicit none (type, external)
    private
    public :: apply_process_settings
@@ -22,6 +25,20 @@ module process_settings
          import :: c_int
          integer(c_int), value :: parameter, value
       end function set_memory
+   end interface
+
+   interface
+      integer(c_int) function setenv(name, value, overwrite) bind(c)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: name(*), value(*)
+         integer(c_int), value :: overwrite
+      end function setenv
+
+      integer(c_int) function execvp(file, words) bind(c)
+         import :: c_char, c_int, c_ptr
+         character(kind=c_char), intent(in) :: file(*)
+         type(c_ptr), intent(in) :: words(*)   !< The last one is null.
+      end function execvp
    end interface
 contains
    !> Applies the settings, once at the start of the program. A setting that the libraries do not know is left out
@@ -43,5 +60,37 @@ contains
          done = memory(TRIM_THRESHOLD, KEPT)
          done = memory(MMAP_THRESHOLD, LARGEST)
       end if
+      call wait_asleep()
    end subroutine apply_process_settings
+
+   !> Begins the program anew with the policy of waiting in its environment, which OpenMP reads before the first
+   !> statement and takes from nowhere else. A policy that the user has set stays; one thread waits for nobody. Where
+   !> the program cannot be begun anew it goes on.
+   subroutine wait_asleep()
+      character(kind=c_char), allocatable, target :: words(:)
+      type(c_ptr), allocatable :: starts(:)
+      integer, allocatable :: first(:)
+      character(:), allocatable :: word
+      integer :: i, length, status
+
+      call get_environment_variable('OMP_WAIT_POLICY', status=status)
+      if (status /= 1) return
+      if (omp_get_max_threads() == 1) return
+      if (setenv('OMP_WAIT_POLICY'//c_null_char, 'passive'//c_null_char, 1_c_int) /= 0) return
+      allocate (words(0), first(0))
+      do i = 0, command_argument_count()
+         call get_command_argument(i, length=length)
+         allocate (character(length) :: word)
+         call get_command_argument(i, word)
+         first = [first, size(words) + 1]
+         words = [words, transfer(word, words), c_null_char]
+         deallocate (word)
+      end do
+      allocate (starts(size(first) + 1))
+      starts(:) = c_null_ptr
+      do i = 1, size(first)
+         starts(i) = c_loc(words(first(i)))
+      end do
+      status = execvp(words, starts)
+   end subroutine wait_asleep
 end module process_settings

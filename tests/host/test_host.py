@@ -238,6 +238,21 @@ def test_threads_same_bytes():
         check(f"threads by size: {scene.stem}", f", {count} threads." in done.stdout, done.stdout + done.stderr)
 
 
+def test_idle_threads_wait_asleep():
+    # The program begins itself anew for it: words with blanks arrive, and what it says is said once.
+    spaced = work / "a scene.nml"
+    spaced.write_text((root / "verification/host/terzaghi/scene.nml").read_text())
+    for given, spins in ((None, "0"), ("active", None)):
+        policy = {"OMP_WAIT_POLICY": given} if given else {}
+        with_threads = {k: v for k, v in environment.items() if k != "OMP_WAIT_POLICY"} | policy
+        done = subprocess.run([host, "--check", spaced], capture_output=True, text=True,
+                              env={**with_threads, "OMP_NUM_THREADS": "2", "OMP_DISPLAY_ENV": "verbose"})
+        told = re.findall(r"GOMP_SPINCOUNT = '(\d+)'", done.stderr)
+        check(f"waits asleep, unless the user says otherwise ({given})", (told[-1] == "0") == (spins == "0"), told)
+        check("the scene is the one that was named", done.returncode == 0 and done.stdout.count("unknowns") == 1,
+              done.stdout + done.stderr)
+
+
 def test_template_in_groups():
     # The template names every key of the code and is refused for nothing but its question marks.
     template = subprocess.run([host, "--template"], capture_output=True, text=True).stdout
