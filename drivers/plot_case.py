@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One page for a result of mud_triax (CSV or HDF5): plot_case.py FILE [FILE ...] [--output PICTURE]
+"""One page for a result of mud_triax: plot_case.py FILE [FILE ...] [--output PICTURE]
 
 Several files are drawn over each other. The panels follow from what the test did: paths of stress and strain always,
 pore pressure where it builds up, suction and saturation where suction moves, cycles where there are any.
@@ -8,21 +8,15 @@ import argparse
 import pathlib
 import sys
 
-import numpy as np
-
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path += [str(ROOT / "common"), str(ROOT / "python/mud")]
 sys.dont_write_bytecode = True
 import tables  # noqa: E402 (its folder is known only now)
 import plots  # noqa: E402 (of the package, alone: a page needs no library)
 
+
 def read_result(path):
     """(facts, columns) of a result file."""
-    if path.suffix in (".h5", ".hdf5"):
-        import h5py
-        with h5py.File(path) as file:
-            return ({k: tables.decoded(v) for k, v in file.attrs.items()},
-                    {k: np.array(v, float) for k, v in file.items()})
     facts = {}
     for line in tables.comments(path):
         name, _, text = line.rpartition(": ") if line.startswith("not") else line.partition(": ")

@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 PICTURE = ROOT / "docs/architecture.svg"
 PARTS = ["host", "drivers", "materials", "common", "umat"]   # folders at the top whose sources are drawn
 COLUMNS = [["host"], ["drivers", "materials", "common"], ["umat"]]
-OF_THE_FOLDER_ABOVE = {"src", "without_hdf5"}   # folders that say nothing of a layer
+OF_THE_FOLDER_ABOVE = {"src"}   # folders that say nothing of a layer
 PROGRAM, GROUND = "program", "ground"   # beside the folders of a part: what stands on top of them, what all of them use
 
 UNIT = re.compile(r"^(module|program) (\w+)$", re.MULTILINE)

@@ -22,16 +22,15 @@ contains
       integer :: i
 
       write (output_unit, '(a)') &
-         'usage: mud_triax CASE.nml [--output FILE.csv|.h5] [--material NAME] [--quiet] [--residuals]', &
+         'usage: mud_triax CASE.nml [--output FILE.csv] [--material NAME] [--quiet] [--residuals]', &
          '                 [--accuracy A] [--verify] [--save-failed FILE]', &
          '       mud_triax --template > my_case.nml', &
          '       mud_triax --help | --version', &
          '', &
-         'Runs a laboratory test on a soil model at a point, MUD or another law, and writes a CSV or HDF5 file.', &
+         'Runs a laboratory test on a soil model at a point, MUD or another law, and writes a CSV file.', &
          'Compression is positive, stresses are effective, q = sigma_a - sigma_r is negative in extension.', &
          '', &
-         '   --output FILE   where to write; default: NAME.csv in the current folder; "-" is the screen;', &
-         '                   a name that ends in .h5 or .hdf5 is written as HDF5', &
+         '   --output FILE   where to write; default: NAME.csv in the current folder; "-" is the screen', &
          '   --material NAME   replaces &material of the case by a set of the library of materials (toyoura,', &
          '                   karlsruhe ...), or by a file whose name ends in .nml', &
          '   --accuracy A    relative error wanted in the histories, in place of accuracy of &case: increments and', &

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Results: rows of a CSV or HDF5 file.
+!> Results: rows of a CSV file, or of a table in memory.
 module triax_output
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
@@ -8,35 +8,31 @@ module triax_output
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use texts, only: short, lower_case
    use triax_case, only: case_t
-   use triax_columns, only: column_t, COLUMNS, columns_shown, values_of
+   use triax_columns, only: COLUMNS, columns_shown, values_of
    use triax_stage_run, only: stage_run_t
-   use stress_units, only: stress_unit_t, in_unit
+   use stress_units, only: stress_unit_t
    use csv, only: csv_t, open_csv, write_line, close_csv
-   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, put, put_text
    use triax_point, only: soil_t, point_t
    implicit none (type, external)
    private
    public :: table_t, open_table, open_memory_table, write_row, add_note, close_table
 
-   !> An output file; `to_screen` if it is the standard output.
+   !> An output file, or a table in memory.
    type :: table_t
       type(csv_t) :: csv
-      type(h5_t) :: h5
-      logical :: to_screen = .false.
-      logical :: hdf5 = .false.      !< Written when the table is closed.
-      logical :: keeps = .false.     !< Rows are kept: for HDF5, or for a caller.
+      logical :: to_screen = .false.   !< The file is the standard output.
+      logical :: keeps = .false.       !< The table is in memory.
       logical :: closed = .true.
       integer, allocatable :: shown(:)      !< Numbers of the columns that are written.
       integer :: rows = 0
       type(stress_unit_t) :: unit
       character(:), allocatable :: path
       real(wp), allocatable :: kept(:, :)   !< rows (room for more), columns
-      character(:), allocatable :: remarks  !< Of a table in memory, a line each.
+      character(:), allocatable :: remarks  !< Facts of a table in memory, a line each.
    end type table_t
 
 contains
-   !> Opens the file and writes its header. Fault EXIT_OUTPUT: it cannot be written, or is HDF5 and the program was
-   !> built without.
+   !> Opens the file and writes its header. Fault EXIT_OUTPUT: it cannot be written, or its name asks for HDF5.
    subroutine open_table(path, test, table, fault)
       character(*), intent(in) :: path   !< '-' is the standard output.
       type(case_t), intent(in) :: test
@@ -46,18 +42,9 @@ contains
       table%path = path
       table%shown = columns_shown(test%soil, test%stages)
       table%to_screen = path == '-'
-      table%hdf5 = ends_in(path, '.h5') .or. ends_in(path, '.hdf5')
-      if (table%hdf5 .and. .not. HAS_HDF5) then
-         call raise(fault, EXIT_OUTPUT, path//': this mud_triax was built without HDF5; choose a .csv '// &
-                    'file, or install libhdf5-dev and build again.')
-      else if (table%hdf5) then
-         ! The file is written at the end; this says now whether it can be.
-         call new_file(table%h5, path)
-         if (table%h5%good) then
-            call keep_rows(table)
-         else
-            call raise(fault, EXIT_OUTPUT, path//' cannot be written; choose another place with --output.')
-         end if
+      if (ends_in(path, '.h5') .or. ends_in(path, '.hdf5')) then
+         call raise(fault, EXIT_OUTPUT, path//': mud_triax writes CSV, no HDF5; name a file that ends in .csv. '// &
+                    'drivers/README.md, Columns, has a line of Python that converts it.')
       else
          call open_csv(path, size(table%shown), table%csv, fault)
       end if
@@ -75,17 +62,11 @@ contains
       table%path = ''
       table%shown = columns_shown(test%soil, test%stages)
       table%remarks = ''
-      call keep_rows(table)
+      table%keeps = .true.
+      allocate (table%kept(0, size(table%shown)))
       table%closed = .false.
       call header(test, table, fault)
    end subroutine open_memory_table
-
-   subroutine keep_rows(table)
-      type(table_t), intent(inout) :: table
-
-      table%keeps = .true.
-      allocate (table%kept(0, size(table%shown)))
-   end subroutine keep_rows
 
    pure logical function ends_in(path, ending)
       character(*), intent(in) :: path, ending
@@ -123,15 +104,13 @@ contains
       if (.not. table%keeps) call write_line(table%csv, names, fault)
    end subroutine header
 
-   !> A fact about the run: a comment line, or an attribute of the HDF5 file.
+   !> Adds a fact about the run as a comment line. Fault EXIT_OUTPUT: the file cannot be written.
    subroutine remark(table, name, text, fault)
       type(table_t), intent(inout) :: table
       character(*), intent(in) :: name, text
       type(fault_t), intent(inout) :: fault
 
-      if (table%hdf5) then
-         call put_text(table%h5, name, text)
-      else if (table%keeps) then
+      if (table%keeps) then
          table%remarks = table%remarks//name//': '//text//new_line('a')
       else
          call write_line(table%csv, '# '//name//': '//text, fault)
@@ -210,34 +189,11 @@ contains
       character(*), intent(in) :: stopped   !< Why, empty if it did not.
       type(fault_t), intent(inout) :: fault
       type(fault_t) :: last
-      integer :: i
-      logical :: good
 
       if (table%closed) return
       table%closed = .true.
       if (len(stopped) > 0) call remark(table, 'stopped', stopped, last)
-      if (.not. table%keeps) then
-         call close_csv(table%csv, last)
-      else if (table%hdf5) then
-         do i = 1, size(table%shown)
-            call put_column(table%h5, COLUMNS(table%shown(i)), table%unit, table%kept(:table%rows, i))
-         end do
-         call write_file(table%h5, good)
-         if (.not. good) call raise(last, EXIT_OUTPUT, table%path//' cannot be written; is the disk full?')
-      end if
+      if (.not. table%keeps) call close_csv(table%csv, last)
       if (fault%code == 0) fault = last
    end subroutine close_table
-
-   subroutine put_column(file, column, unit, values)
-      type(h5_t), intent(inout) :: file
-      type(column_t), intent(in) :: column
-      type(stress_unit_t), intent(in) :: unit
-      real(wp), intent(in) :: values(:)
-
-      if (column%whole) then
-         call put(file, trim(column%name), nint(values), in_unit(trim(column%unit), unit), trim(column%meaning))
-      else
-         call put(file, trim(column%name), values, in_unit(trim(column%unit), unit), trim(column%meaning))
-      end if
-   end subroutine put_column
 end module triax_output

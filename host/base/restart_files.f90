@@ -2,7 +2,7 @@
 !> What the files have in common from which a run goes on: who wrote them, and which are refused.
 module restart_files
    use faults, only: fault_t, raise, EXIT_RESTART
-   use hdf5_file, only: HAS_HDF5, h5_t, open_file, close_file, put_text, get_text
+   use hdf5_file, only: h5_t, open_file, close_file, put_text, get_text
    use library_version, only: library
    implicit none (type, external)
    private
@@ -27,7 +27,7 @@ contains
       call put_text(file, 'library', library())
    end subroutine put_origin
 
-   !> Opens a file to read. Fault EXIT_RESTART, and the file is closed: no HDF5, no such file, a truncated one, one of
+   !> Opens a file to read. Fault EXIT_RESTART, and the file is closed: no such file, a truncated one, one of
    !> another kind or of another version of program or library.
    subroutine open_restart(path, kind, file, fault)
       character(*), intent(in) :: path
@@ -36,10 +36,6 @@ contains
       type(fault_t), intent(inout) :: fault
       character(64) :: format, theirs, here
 
-      if (.not. HAS_HDF5) then
-         call raise(fault, EXIT_RESTART, 'This mud_host was built without HDF5: it cannot restart from '//path//'.')
-         return
-      end if
       call open_file(path, file)
       if (.not. file%good) then
          call raise(fault, EXIT_RESTART, path//' is missing, no HDF5 file, or truncated; name the '// &

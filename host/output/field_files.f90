@@ -6,7 +6,7 @@ module field_files
    use porous_domain, only: domain_t, state_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use files, only: write_whole, bytes_of
-   use hdf5_file, only: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
+   use hdf5_file, only: h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    use texts, only: whole
    implicit none (type, external)
@@ -45,8 +45,7 @@ module field_files
       field_t('S_w', '-', 'degree of saturation', .false., 1), &
       field_t('ground', '-', '1: part of the ground at this time, 0: not', .false., 1)]
 contains
-   !> mesh.h5: nodes, elements, quadrature points, region of every element. Nothing without HDF5. Fault EXIT_OUTPUT: it
-   !> cannot be written.
+   !> mesh.h5: nodes, elements, quadrature points, region of every element. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_mesh(folder, model, fingerprint, domain, fault)
       character(*), intent(in) :: folder, model, fingerprint   !< Name and fingerprint of the scene.
       type(domain_t), intent(in) :: domain
@@ -55,7 +54,6 @@ contains
       integer :: e, g
       logical :: good
 
-      if (.not. HAS_HDF5) return
       call new_file(file, folder//'/mesh.h5')
       call put_text(file, 'kind', 'mesh of mud_host')
       call put_text(file, 'scene', model)
@@ -96,8 +94,8 @@ contains
       call close_file(file)
    end subroutine check_mesh
 
-   !> fields_NUMBER.h5 of a state, and results.xdmf up to it. Nothing without HDF5. Units: see LIST. Fault EXIT_OUTPUT:
-   !> they cannot be written.
+   !> fields_NUMBER.h5 of a state, and results.xdmf up to it. Units: see LIST. Fault EXIT_OUTPUT: they cannot be
+   !> written.
    subroutine write_frame(folder, domain, state, frames, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
@@ -110,7 +108,6 @@ contains
       integer :: i
       logical :: good
 
-      if (.not. HAS_HDF5) return
       frames%times = [frames%times, state%time]
       path = folder//'/'//file_of(size(frames%times))
       call all_pressures(domain, state, x)

@@ -4,10 +4,9 @@ module run_output
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
    use wall_clock, only: clock
-   use faults, only: fault_t, raise, EXIT_INPUT
+   use faults, only: fault_t, raise
    use folder_lock, only: lock_folder, unlock_folder
    use interrupts, only: interrupted, EXIT_INTERRUPTED
-   use hdf5_file, only: HAS_HDF5
    use texts, only: short
    use checkpoints, only: write_checkpoint, CHECKPOINT
    use warnings, only: print_warning
@@ -42,19 +41,13 @@ module run_output
       procedure :: warn
    end type run_output_t
 contains
-   !> Opens the files; a new run writes its start. Fault EXIT_INPUT: checkpoints are asked for and there is no HDF5;
-   !> faults of open_tables and write_frame.
+   !> Opens the files; a new run writes its start. Faults of open_tables and write_frame.
    subroutine run_begins(self, model, run, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (.not. HAS_HDF5 .and. (model%checkpoint_steps > 0 .or. model%checkpoint_seconds > 0.0_wp)) then
-         call raise(fault, EXIT_INPUT, 'This mud_host was built without HDF5: it writes no checkpoints; leave '// &
-                    'checkpoint_steps and checkpoint_seconds out, or install HDF5 and build anew.')
-         return
-      end if
       self%progress%quiet = self%quiet
       self%last_checkpoint = clock()
       call lock_folder(self%folder, .not. self%resume, fault)
@@ -104,7 +97,7 @@ contains
       if (model%checkpoint_steps > 0) checkpoint = mod(run%steps, model%checkpoint_steps) == 0
       if (model%checkpoint_seconds > 0.0_wp) &
          checkpoint = clock() - self%last_checkpoint >= model%checkpoint_seconds .or. checkpoint
-      if (interrupted()) checkpoint = HAS_HDF5 .or. checkpoint
+      if (interrupted()) checkpoint = .true.
       if (checkpoint) then
          call write_checkpoint(model, run, self%tables, fault)
          self%last_checkpoint = clock()
@@ -129,11 +122,9 @@ contains
       class(run_output_t), intent(in) :: self
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: text
 
-      text = 'Interrupted at '//short(run%state%time)//' s: the results up to there are complete'
-      if (HAS_HDF5) text = text//'; --restart '//self%folder//'/'//CHECKPOINT//' goes on'
-      call raise(fault, EXIT_INTERRUPTED, text//'.')
+      call raise(fault, EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to there '// &
+                 'are complete; --restart '//self%folder//'/'//CHECKPOINT//' goes on.')
    end subroutine tell_interruption
 
    !> The end of a stage; after a failure too, for what was computed. Fault EXIT_OUTPUT: a file cannot be written.

@@ -23,7 +23,6 @@ class Mud(CMakePackage):
 
     variant("shared", default=True, description="Build libmud.so beside libmud.a")
     variant("host", default=False, description="Build the finite-element host")
-    variant("hdf5", default=False, description="Write results as HDF5")
 
     depends_on("c", type="build")
     depends_on("fortran", type="build")
@@ -31,7 +30,7 @@ class Mud(CMakePackage):
     depends_on("python@3.11:", type="build")
     depends_on("lapack")
     depends_on("suite-sparse", when="+host")
-    depends_on("hdf5+fortran", when="+hdf5")
+    depends_on("hdf5+fortran", when="+host")
     requires("%fortran=gcc@12:", msg="the programs are compiled by gfortran 12 or later")
 
     def cmake_args(self):
@@ -39,5 +38,4 @@ class Mud(CMakePackage):
             self.define("MUD_BUILD_TESTS", False),
             self.define_from_variant("MUD_BUILD_SHARED", "shared"),
             self.define_from_variant("MUD_BUILD_HOST", "host"),
-            self.define_from_variant("MUD_WITH_HDF5", "hdf5"),
         ]

@@ -61,9 +61,7 @@ class HostRun:
         # Not whatever lies in the folder: an earlier run may have written more.
         listed = self.folder / "results.xdmf"
         if not listed.exists():
-            raise InputError(
-                f"{self.folder} has no fields: the host was built without HDF5, or the scene asks for none"
-            )
+            raise InputError(f"{self.folder} has no results.xdmf; name the output folder of a run of mud_host")
         return [
             self.folder / n
             for n in dict.fromkeys(re.findall(r">(fields_\d+\.h5):/", listed.read_text(encoding="utf-8")))

@@ -29,7 +29,7 @@ FOREIGN = {
 
 
 def place(folder):
-    """(group, height in it) of a folder; drivers/src and common/without_hdf5 count as drivers and common."""
+    """(group, height in it) of a folder; drivers/src counts as drivers."""
     for group, (folders, _) in GROUPS.items():
         for height, name in enumerate(folders):
             if folder == name:
@@ -145,7 +145,7 @@ def planted():
         ("a name handed on", handed_on, [("a", "host/run", "use node, only: x\npublic :: y, x"), node],
          [("a", "host/run", "use node, only: x\npublic :: y"), node]),
         ("HDF5 elsewhere", foreign, [("node", "host/mesh", "use hdf5, only: h5fopen_f")],
-         [("hdf5_file", "common", "use hdf5, only: x")]),
+         [("hdf5_file", "host/base", "use hdf5, only: x")]),
         ("LAPACK elsewhere", foreign, [("node", "host/mesh", "call dgesv(n)")], [("dense", "common", "call dgesv(n)")]),
         ("UMFPACK elsewhere", foreign, [("node", "host/mesh", "call umfpack_di_solve(n)")],
          [("node", "host/mesh", "call solve(n) ! umfpack_di_solve")]),
@@ -158,12 +158,11 @@ def planted():
 
 
 def read():
-    """{module: (folder, text)} of every source; the variants without a library have the same names."""
+    """{module: (folder, text)} of every source."""
     found = {}
     for file in sources("common/*.f90", "materials/**/*.f90", "drivers/**/*.f90", "host/**/*.f90", "umat/core/**/*.f90",
                         "umat/abi/**/*.f90", "umat/include/*.f90", "umat/tables/*.f90"):
-        if file.parent.name != "without_hdf5":
-            found[file.stem] = (str(file.parent.relative_to(root)), file.read_text(encoding="utf-8"))
+        found[file.stem] = (str(file.parent.relative_to(root)), file.read_text(encoding="utf-8"))
     return found
 
 

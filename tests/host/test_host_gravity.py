@@ -74,15 +74,14 @@ def test_the_column_settles_with_its_weight_at_s():
     text = spin.replace("gravity = ", "checkpoint_steps = 3 gravity = ")
     run("whole", text)
     kept = work / "whole/checkpoint.h5"
-    if kept.exists():
-        before = (work / "whole/histories.csv").read_bytes()
-        run("whole", text, "--restart", kept)
-        check("restart: same bytes", (work / "whole/histories.csv").read_bytes() == before)
-        (work / "other.nml").write_text(text.replace("11 values = 0.02, 0.02, 1", "11 values = 0.02, 0.02, 0.9"))
-        done = subprocess.run([HOST, work / "other.nml", "--restart", kept, "--check"], capture_output=True, text=True,
-                              env=ENVIRONMENT)
-        check("restart with another weight so far: refused with its history", done.returncode == 17
-              and "&history in line " in done.stderr, done.stderr)
+    before = (work / "whole/histories.csv").read_bytes()
+    run("whole", text, "--restart", kept)
+    check("restart: same bytes", (work / "whole/histories.csv").read_bytes() == before)
+    (work / "other.nml").write_text(text.replace("11 values = 0.02, 0.02, 1", "11 values = 0.02, 0.02, 0.9"))
+    done = subprocess.run([HOST, work / "other.nml", "--restart", kept, "--check"], capture_output=True, text=True,
+                          env=ENVIRONMENT)
+    check("restart with another weight so far: refused with its history", done.returncode == 17
+          and "&history in line " in done.stderr, done.stderr)
 
 
 def test_without_gravity_its_history_goes_too():

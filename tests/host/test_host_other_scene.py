@@ -30,7 +30,7 @@ def test_the_run_that_is_to_be_continued():
 
     done = run(text)
     kept = work / "out/checkpoint.h5"
-    if done.returncode == 0 and kept.exists():   # without HDF5 there is no checkpoint to refuse
+    if done.returncode == 0:
         support = re.search(r"&fix\s[^/]*/", text)[0]
         count = len(re.findall(r"^\s*&\w", text, re.M))
         for what, changed, words in (

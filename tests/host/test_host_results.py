@@ -176,11 +176,10 @@ def test_the_storm_wets_and_dries():
     folder = run(storm, "storm")
     limits = [row["top.at_limit"] for row in tables.numbers(folder / "reactions_s.csv")]
     check("the storm wets and dries", limits[8:9] != limits[-1:] and len(set(limits)) > 1, limits)
-    if (folder / "checkpoint.h5").exists():   # there is HDF5
-        kept = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
-        done, _ = start(storm, "storm", "--restart", folder / "checkpoint.h5")
-        check("storm: taken up", done.returncode == 0, done.stderr)
-        check("storm: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
+    kept = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
+    done, _ = start(storm, "storm", "--restart", folder / "checkpoint.h5")
+    check("storm: taken up", done.returncode == 0, done.stderr)
+    check("storm: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
 
 
 def test_friction_is_taken_up_while_a_block_is_stopped():
@@ -190,11 +189,10 @@ def test_friction_is_taken_up_while_a_block_is_stopped():
         .replace("duration = 0.2 ", "duration = 0.006 ")
     folder = run(incline, "incline")
     check("it slides at the end", last(folder, "contact.csv")["b.sliding"] == 9)
-    if (folder / "checkpoint.h5").exists():   # there is HDF5
-        kept = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
-        done, _ = start(incline, "incline", "--restart", folder / "checkpoint.h5")
-        check("incline: taken up", done.returncode == 0, done.stderr)
-        check("incline: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
+    kept = {path.name: path.read_bytes() for path in folder.glob("*.csv")}
+    done, _ = start(incline, "incline", "--restart", folder / "checkpoint.h5")
+    check("incline: taken up", done.returncode == 0, done.stderr)
+    check("incline: the same bytes", all((folder / name).read_bytes() == content for name, content in kept.items()))
     for key in ("friction = -1", "cohesion = -1", "tangential_penalty = -1"):
         done, _ = start(incline.replace("tangential_penalty = 1e7 ", "").replace("friction = 0.2", key), "refused")
         check(f"{key}: refused", done.returncode == 2 and key.split()[0] in done.stderr, done.stderr)

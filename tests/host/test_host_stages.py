@@ -4,6 +4,7 @@ ground brings, gravity that grows, the ground of every moment in the files of fi
 import math
 import subprocess
 
+import h5py
 from checking import check, root, work
 from host_program import ENVIRONMENT, HOST, ran, start
 import tables  # noqa: E402 (checking knows its folder)
@@ -164,7 +165,6 @@ def test_sudden_loads_that_grow_over_a_stage_are_taken_up():
 
 
 def test_fields_say_what_is_ground():
-    h5py = __import__("pytest").importorskip("h5py")
     folder = work / "layers"
     if run("layers", scene("embankment")) is None:
         return

@@ -4,10 +4,11 @@
 The recipe of Spack is run here by stand-ins for the directives of Spack; scripts/try_recipes builds that of conda.
 """
 import re
+import subprocess
 import sys
 import types
 
-from checking import check, root
+from checking import build, check, root, work
 
 read = lambda name: (root / name).read_text(encoding="utf-8")  # noqa: E731
 
@@ -47,12 +48,7 @@ def spack():
 
 
 def test_spack_the_recipe_is_one_of_cmake_with_a_version_and_a_licence():
-    OPTIONS = set(
-    re.findall(
-        r"^option\((MUD_\w+) ",
-        read("CMakeLists.txt") +
-        read("common/CMakeLists.txt"),
-         re.MULTILINE))
+    OPTIONS = set(re.findall(r"^option\((MUD_\w+) ", read("CMakeLists.txt"), re.MULTILINE))
     CMAKE = re.search(r"cmake_minimum_required\(VERSION ([\d.]+)", read("CMakeLists.txt"))[1]
     PYTHON = re.search(r"sys.version_info < \((\d+), (\d+)\)", read("scripts/python_environment.sh")).groups()
 
@@ -73,14 +69,31 @@ def test_spack_the_recipe_is_one_of_cmake_with_a_version_and_a_licence():
     check("Spack: compilers, CMake and Python are those that the build needs",
           {"c", "fortran", f"cmake@{CMAKE}:", "python@{}.{}:".format(*PYTHON), "lapack"} <= set(needs), needs)
 
-    # HDF5 and the host need libraries of their own.
-    check("Spack: the host brings its sparse solver, HDF5 its Fortran interface",
-          needs["suite-sparse"].get("when") == "+host" and needs["hdf5+fortran"].get("when") == "+hdf5", needs)
+    # Only the host needs libraries of its own.
+    check("Spack: the host brings its sparse solver and HDF5 with the Fortran interface",
+          needs["suite-sparse"].get("when") == needs["hdf5+fortran"].get("when") == "+host", needs)
 
     text = read("packaging/conda/recipe.yaml")
     defined = dict(re.findall(r"-D(MUD_\w+)=(\w+)", text))
     check("conda: what it defines are options of CMakeLists.txt", defined and set(defined) <= OPTIONS, defined)
     check("conda: CMake and Python are those that the build needs",
           f"cmake >={CMAKE}" in text and "python >={}.{}".format(*PYTHON) in text, text)
-    check("conda: without the host it needs no sparse solver, and without HDF5 none of it",
-          defined["MUD_BUILD_HOST"] == defined["MUD_WITH_HDF5"] == "OFF" and "suitesparse" not in text, text)
+    check("conda: without the host it needs neither a sparse solver nor HDF5",
+          defined["MUD_BUILD_HOST"] == "OFF" and "suitesparse" not in text and "hdf5" not in text, text)
+
+
+def test_only_the_host_needs_hdf5():
+    # CMake, told that HDF5 is not there: the host says what is missing, and the rest is configured.
+    def configured(*options):
+        done = subprocess.run(["cmake", "-S", root, "-B", work / "tree", "-DCMAKE_DISABLE_FIND_PACKAGE_HDF5=ON",
+                               "-DMUD_BUILD_TESTS=OFF", f"-DMUD_PYTHON={sys.executable}", *options],
+                              capture_output=True, text=True)
+        return done.returncode, " ".join((done.stdout + done.stderr).split())
+    code, told = configured()
+    check("the host asks for it by name, or to be left out", code != 0 and
+          all(words in told for words in ("mud_host needs HDF5", "libhdf5-dev", "MUD_BUILD_HOST=OFF")), told)
+    code, told = configured("-DMUD_BUILD_HOST=OFF")
+    check("without the host nothing asks for it", code == 0, told)
+    for file in ("drivers/mud_triax", "drivers/libmud_triax.so", "umat/libmud.so"):
+        linked = subprocess.run(["objdump", "-p", build / file], capture_output=True, text=True).stdout
+        check(f"{file} is not linked with it", "NEEDED" in linked and "hdf5" not in linked, linked)

@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> HDF5 files of the host, the only module that knows the HDF5 library: datasets with the attributes `unit` and
 !> `description` and a checksum, texts as attributes of the file. A file is built in memory and written as a whole, so
-!> that a full disk or a killed run leaves no half of one under its name. Without HDF5 the file of the same name in
-!> without_hdf5 is built.
+!> that a full disk or a killed run leaves no half of one under its name.
 module hdf5_file
    use, intrinsic :: iso_c_binding, only: c_ptr, c_loc
    use hdf5, only: hid_t, hsize_t, size_t, h5open_f, h5eset_auto_f, h5fcreate_f, h5fopen_f, h5fclose_f, &
@@ -19,9 +18,8 @@ module hdf5_file
    use files, only: name_part, remove_part, PART
    implicit none (type, external)
    private
-   public :: HAS_HDF5, h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
+   public :: h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
 
-   logical, parameter :: HAS_HDF5 = .true.
    integer(size_t), parameter :: GROWTH = 1048576   !< By which a file in memory grows [bytes].
    integer, parameter :: TEXT_LENGTH = 64           !< Of a text that is read back.
 
