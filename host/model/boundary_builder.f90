@@ -4,7 +4,7 @@ module boundary_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
-   use model_types, only: model_t
+   use model_types, only: model_t, gravity_at
    use name_search, only: mesh_group, defined_name
    use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, acts_in, place_of, &
                           LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
@@ -189,6 +189,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       initial%group = mesh_group(model%domain%mesh, initial%group_name, place_of(initial), fault)
+      if (initial%with_table) initial%water_weight = model%domain%fluids%rho_w*gravity_at(model, 0.0_wp)
    end subroutine build_initial
 
    subroutine build_fix(model, fix, fault)

@@ -211,13 +211,15 @@ contains
 
          if (amplitude == 0) return
          associate (h => model%amplitudes(amplitude))
+            if (size(h%stages) > 0) return
             factor = amplitude_at(h, start)
             if (.not. any(h%times < start .and. &
                           abs(h%values - factor) > AT_ONCE*(maxval(h%values) - minval(h%values)))) return
             call add_warning(place_of(item)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))// &
                ' s, and this acts from '//short(start)//' s on, at once with the factor '//short(factor)// &
                trim(merge(', which then stays; ', ';                   ', h%times(size(h%times)) <= start))// &
-               ' times of a &history are those of the run, not of a stage.', warnings)
+               ' times of a &history are those of the run, not of a stage: its key stages counts them from stages.', &
+               warnings)
          end associate
       end subroutine look
    end subroutine look_at_histories

@@ -87,20 +87,24 @@ contains
       end do
    end function pressures_at_start
 
-   !> Pore water pressure at the start at a height [kPa]. Linear in z: docs/theory/host.md section 8.
+   !> Pore water pressure at the start at a height [kPa]: linear in z, above a water table with a limit;
+   !> docs/theory/host.md section 8.
    pure real(wp) function water(initial, z)
       type(initial_t), intent(in) :: initial
       real(wp), intent(in) :: z   !< [m]
 
       water = initial%p_w + initial%p_w_slope*(z - initial%datum)
+      if (initial%with_table) water = max(initial%water_weight*(initial%water_table - z), -initial%largest_suction)
    end function water
 
-   !> Suction at the start at a height [kPa]. Linear in z: docs/theory/host.md section 8.
+   !> Suction at the start at a height [kPa], as water; at and below a water table -p_w, which keeps the air at the
+   !> pressure outside: docs/theory/host.md section 8.
    pure real(wp) function suction(initial, z)
       type(initial_t), intent(in) :: initial
       real(wp), intent(in) :: z   !< [m]
 
       suction = initial%p_c + initial%p_c_slope*(z - initial%datum)
+      if (initial%with_table) suction = -water(initial, z)
    end function suction
 
    !> Nodes of elements whose fluids flow, middles of sides included.
@@ -164,8 +168,8 @@ contains
          do i = 1, size(model%initials)
             associate (one => model%initials(i), elements => &
                        domain%mesh%groups(model%initials(i)%group)%elements)
-               if (size(elements) == 0 .or. .not. any(abs([one%p_w, one%p_w_slope, one%p_c, one%p_c_slope]) > 0.0_wp)) &
-                  cycle
+               if (size(elements) == 0 .or. .not. any(abs([one%p_w, one%p_w_slope, one%p_c, one%p_c_slope, &
+                                                           one%water_weight]) > 0.0_wp)) cycle
                if (any(domain%regions(domain%region_of(elements))%drainage /= DRY)) cycle
                call raise(fault, EXIT_GROUP, place_of(one)//'all '//whole(size(elements))//' elements of '''// &
                           trim(one%group_name)//''' are of regions with drainage = ''dry'': p_w and p_c have no '// &

@@ -5,6 +5,7 @@ module start_look
    use kinds, only: wp, PI
    use generalised_alpha, only: STATIC, DYNAMIC
    use given_pressures, only: water, suction
+   use history_shapes, only: slope_beside
    use idle_keys, only: add_warning, WARNING_LENGTH
    use initial_conditions, only: balance_t
    use model_types, only: model_t
@@ -236,8 +237,7 @@ contains
 
       slope = 0.0_wp
       k = count(history%times <= time)
-      if (k == 0 .or. k == size(history%times)) return
-      slope = (history%values(k + 1) - history%values(k))/(history%times(k + 1) - history%times(k))
+      if (k > 0) slope = slope_beside(history%times, history%values, history%arcs, k, 1)
    end function slope_after
 
    !> A force that seems to be in N, and a plate on the ground that nothing presses down.
@@ -320,13 +320,14 @@ contains
          if (.not. acts_in(stages, model%stages(s)%name)) return
          start = sum(model%stages(:s - 1)%duration)
          associate (h => model%amplitudes(amplitude), n => size(model%amplitudes(amplitude)%times))
+            if (size(h%stages) > 0) return
             if (h%times(n) > start .or. h%times(n) - h%times(1) > BRIEF*start) return
             if (abs(h%values(n) - h%values(1)) > 0.0_wp .or. .not. any(abs(h%values - h%values(1)) > 0.0_wp)) return
             ! What acts from that stage on alone is told by its first factor.
             if (.not. any([(acts_in(stages, model%stages(i)%name), i=1, s - 1)])) return
             call add_warning(place_of(item)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &
                ' s, before stage '//trim(model%stages(s)%name)//' begins at '//short(start)//' s; times of a '// &
-               '&history are those of the run, not of a stage.', warnings)
+               '&history are those of the run, not of a stage: its key stages counts them from stages.', warnings)
          end associate
       end subroutine look
    end subroutine look_at_pulses

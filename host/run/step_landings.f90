@@ -8,6 +8,7 @@
 module step_landings
    use kinds, only: wp
    use boundary_loads, only: load_at
+   use history_shapes, only: kinks_of
    use model_types, only: model_t
    use run_state, only: run_t
    use scene_types, only: amplitude_t, amplitude_at, acts_in, stage_t
@@ -48,8 +49,9 @@ contains
          + stage%output_dt*(aint((now - run%at%t_start + close)/stage%output_dt) + 1))
    end function next_time
 
-   !> End of a given step: as late as it is asked for, unless it would jump over a whole segment of a history or all the
-   !> time in which a support acts; then where a controlled step would end [s]. docs/theory/host.md section 4.5.
+   !> End of a given step: as late as it is asked for, unless it would jump over a kink of a history of known shape, a
+   !> whole segment of another, or all the time in which a support acts; then where a controlled step would end [s].
+   !> docs/theory/host.md section 4.5.
    pure real(wp) function end_of_given(model, stage, now, asked) result(until)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -60,7 +62,9 @@ contains
       until = asked
       close = LAST_STEP*(asked - now)
       do i = 1, size(model%amplitudes)
-         associate (t => model%amplitudes(i)%times)
+         associate (h => model%amplitudes(i), t => model%amplitudes(i)%times)
+            if (size(h%arcs) > 0) until = min(until, minval(t, mask=t > now + close .and. t < asked - close .and. &
+                                                            kinks_of(t, h%values, h%arcs)))
             if (any(t(:size(t) - 1) >= now - close .and. t(2:) <= asked + close)) until = min(until, &
                straight_until(model%amplitudes(i), now, close, asked, CHORD_SHARE*stage%step_tolerance))
          end associate
@@ -123,6 +127,10 @@ contains
       do i = 1, size(model%amplitudes)
          associate (h => model%amplitudes(i))
             if (.not. any(abs(h%times - time) < LAST_STEP*dt)) cycle
+            ! Where two arcs of a wave meet nothing breaks.
+            if (size(h%arcs) > 0) then
+               if (.not. any(abs(h%times - time) < LAST_STEP*dt .and. kinks_of(h%times, h%values, h%arcs))) cycle
+            end if
             turn = amplitude_at(h, time + dt) - 2*amplitude_at(h, time) + amplitude_at(h, time - dt)
             is_break = is_break .or. abs(turn) > stage%step_tolerance*(maxval(h%values) - minval(h%values))
          end associate

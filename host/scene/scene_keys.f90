@@ -5,6 +5,7 @@
 module scene_keys
    use kinds, only: wp
    use effect_names, only: EFFECT_WORDS
+   use history_shapes, only: pairs_of_shape, SHAPE_WORDS, TABLE
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, REQUIRED, UNBOUNDED, check_group, given, line_of
    use key_table, only: key_table_t
@@ -281,8 +282,9 @@ contains
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
       type(initial_t) :: initial
+      character(*), parameter :: BY_HAND(*) = [character(9) :: 'p_w', 'p_w_slope', 'p_c', 'p_c_slope', 'datum']
       real(wp), allocatable :: sigma(:)
-      integer :: stress
+      integer :: stress, i
 
       initial%scene_item_t = item_of(k%group)
       call k%text('group', initial%group_name, 'group of elements or nodes')
@@ -290,6 +292,10 @@ contains
       call k%number('p_w_slope', initial%p_w_slope, -BIG, BIG, 'change of p_w with z [kPa/m]', ':p_w')
       call k%number('p_c', initial%p_c, -BIG, BIG, 'suction at the datum [kPa]', ':p_c')
       call k%number('p_c_slope', initial%p_c_slope, -BIG, BIG, 'change of p_c with z [kPa/m]', ':p_c')
+      call k%number('water_table', initial%water_table, -BIG, BIG, &
+                    'instead of these: z of the water table; p_w of water at rest, p_c = -p_w [m]', ':p_w')
+      call k%number('largest_suction', initial%largest_suction, TINY_, BIG, &
+                    'above a water table p_c grows no further [kPa]', '+water_table')
       call k%number('saturation', initial%saturation, 1.0e-6_wp, ONE, &
                     'S_w between the main curves, with hysteresis [-]; default: on the main drying curve', ':p_c')
       call k%number('datum', initial%datum, -BIG, BIG, 'z of the datum [m]')
@@ -308,6 +314,16 @@ contains
       call k%number('k_0', initial%k_0, ZERO, 10*ONE, 'geostatic: horizontal over vertical stress', 'stress=geostatic')
       call k%flag('k_0_of', initial%net, 'net|effective', 'net', 'stress that K_0 acts on where p_c > 0', &
                   'stress=geostatic')
+      initial%with_table = k%given('water_table')
+      if (initial%with_table .and. any([(k%given(trim(BY_HAND(i))), i=1, size(BY_HAND))])) then
+         call raise(fault, EXIT_INPUT, place_of(initial)//'water_table gives p_w and p_c of water at rest; leave '// &
+                    'out p_w, p_w_slope, p_c, p_c_slope and datum, or water_table.')
+         return
+      else if (initial%with_table .and. .not. scene%gravity > 0.0_wp) then
+         call raise(fault, EXIT_INPUT, place_of(initial)//'water_table needs gravity in &scene: without it the '// &
+                    'water has no weight, and no pressure that changes with z; give gravity = 9.81, or p_w and p_c.')
+         return
+      end if
       initial%uniform = stress == 2
       initial%geostatic = stress == 3
       if (initial%uniform .and. size(sigma) /= 3) then
@@ -318,20 +334,49 @@ contains
       scene%initials = [scene%initials, initial]
    end subroutine take_initial
 
-   !> Times and factors from the keys, or from a file with two numbers a line.
+   !> Times and factors from the keys, from a file with two numbers a line, or of a known shape.
    subroutine take_history(k, scene, fault)
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
+      character(*), parameter :: OF_TABLES(*) = [character(6) :: 'times', 'values', 'file'], &
+                                 OF_SHAPES(*) = [character(7) :: 'start', 'period', 'repeats']
       type(amplitude_t) :: amplitude
       character(LENGTH) :: file
+      real(wp) :: start, period
+      integer :: shape, repeats, i
 
+      amplitude%scene_item_t = item_of(k%group)
       call k%text('name', amplitude%name, 'name, for the key history of loads', REQUIRED)
+      shape = TABLE
+      call k%word('kind', shape, SHAPE_WORDS, 'pairs of a table, a wave, or a pulse between 0 and 1')
       call k%numbers('times', amplitude%times, -BIG, BIG, 'ascending [s]; straight lines between, constant outside', &
                      '-file')
       call k%numbers('values', amplitude%values, -BIG, BIG, 'factors at these times [-]', '-file')
       file = ''
       call k%text('file', file, 'instead: text file, a time and a factor in every line')
+      start = 0.0_wp
+      period = 0.0_wp
+      repeats = 1
+      call k%number('start', start, -BIG, BIG, 'when a wave or pulse begins [s]; 0 before')
+      call k%number('period', period, TINY_, BIG, 'period of a sine, length of a pulse [s]')
+      call k%whole('repeats', repeats, 1, 10000, 'waves or pulses, one after the other; 0 after them')
+      call k%texts('stages', amplitude%stages, &
+                   'times count from the start of each of these stages; default: of the run')
+      allocate (amplitude%arcs(0))
+      if (shape /= TABLE) then
+         if (any([(k%given(trim(OF_TABLES(i))), i=1, size(OF_TABLES))]) .or. .not. k%given('period')) then
+            call raise(fault, EXIT_INPUT, place_of(amplitude)//'history '//trim(amplitude%name)//' has a kind that '// &
+                       'needs its period [s], and neither times and values nor a file.')
+            return
+         end if
+         call pairs_of_shape(shape, start, period, repeats, amplitude%times, amplitude%values, amplitude%arcs)
+      else if (any([(k%given(trim(OF_SHAPES(i))), i=1, size(OF_SHAPES))])) then
+         call raise(fault, EXIT_INPUT, place_of(amplitude)//'start, period and repeats are those of a sine or a '// &
+                    'pulse, and history '//trim(amplitude%name)//' is a table; give kind = ''sine'', '// &
+                    '''half_sine'', ''haversine'' or ''triangle''.')
+         return
+      end if
       if (k%given('file')) call read_pairs(trim(file), trim(k%group%file), k%group%line, 'a time and a factor', &
                                            amplitude%times, amplitude%values, fault)
       if (fault%code /= 0) return

@@ -14,6 +14,7 @@ module scene_reader
    use scene_refinement, only: refine_mesh
    use scene_settings, only: apply_settings
    use scene_types, only: scene_t, scene_item_t, place_of
+   use stage_histories, only: place_histories
    implicit none (type, external)
    private
    public :: read_scene
@@ -54,6 +55,7 @@ contains
          call take_group(table, scene, fault)
       end do
       if (fault%code == 0) call check_stages(scene, fault)
+      if (fault%code == 0) call place_histories(scene, fault)
       if (fault%code == 0) call remove_effects(scene, fault)
       if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_mesh(scene%mesh, fault)
    end subroutine read_scene
@@ -94,6 +96,9 @@ contains
       end do
       do i = 1, size(scene%contacts)
          call check(scene%contacts(i)%scene_item_t, scene%contacts(i)%stages)
+      end do
+      do i = 1, size(scene%amplitudes)
+         call check(scene%amplitudes(i)%scene_item_t, scene%amplitudes(i)%stages)
       end do
       do i = 1, size(scene%regions)
          call check(scene%regions(i)%scene_item_t, scene%regions(i)%stages)

@@ -7,6 +7,7 @@ module scene_types
    use contact_types, only: contact_options_t
    use convergence, only: BY_STAGE
    use faults, only: at_line
+   use history_shapes, only: arc_at
    use namelists, only: group_t, LENGTH
    use permeability_laws, only: permeability_t
    use porous_domain, only: fluids_t, COUPLED
@@ -72,6 +73,10 @@ module scene_types
       character(LENGTH) :: group_name = 'all'
       integer :: group = 0                           !< Of the mesh.
       real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
+      logical :: with_table = .false.                !< Pressures are those of water at rest.
+      real(wp) :: water_table = 0.0_wp               !< [m]
+      real(wp) :: water_weight = 0.0_wp              !< Of it, in the gravity of the start [kN/m3].
+      real(wp) :: largest_suction = NEVER            !< Above a water table [kPa].
       real(wp) :: saturation = 0.0_wp, v_z = 0.0_wp, wave = 0.0_wp, wave_number = 0.0_wp
       logical :: uniform = .false., geostatic = .false.
       logical :: follows = .false.      !< Columns end at the top of the ground above a point, not at `surface`.
@@ -86,9 +91,11 @@ module scene_types
    end type strength_t
 
    !> How a value changes with time.
-   type :: amplitude_t
+   type, extends(scene_item_t) :: amplitude_t
       character(NAME_LENGTH) :: name = ''
       real(wp), allocatable :: times(:), values(:)
+      integer, allocatable :: arcs(:)                !< Ways between the pairs (history_shapes); none: straight.
+      character(LENGTH), allocatable :: stages(:)    !< From whose starts the times count; none: that of the run.
    end type amplitude_t
 
    type :: stage_t
@@ -226,10 +233,11 @@ contains
       place = at_line(item%file, item%line)
    end function place_of
 
-   !> Factor of an amplitude at a time: straight lines between its pairs, constant outside. [-]
+   !> Factor of an amplitude at a time: straight lines or arcs between its pairs, constant outside. [-]
    pure real(wp) function amplitude_at(amplitude, time) result(factor)
       type(amplitude_t), intent(in) :: amplitude
       real(wp), intent(in) :: time   !< [s]
+      real(wp) :: share
       integer :: low, high, i
 
       associate (t => amplitude%times, v => amplitude%values)
@@ -248,7 +256,9 @@ contains
                high = i
             end if
          end do
-         factor = v(low) + (v(high) - v(low))*(time - t(low))/(t(high) - t(low))
+         share = (time - t(low))/(t(high) - t(low))
+         if (size(amplitude%arcs) > 0) share = arc_at(amplitude%arcs(low), share)
+         factor = v(low) + (v(high) - v(low))*share
       end associate
    end function amplitude_at
 
