@@ -18,7 +18,7 @@ module hdf5_file
    use files, only: name_part, remove_part, PART
    implicit none (type, external)
    private
-   public :: h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extent_of
+   public :: h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extents_of
 
    integer(size_t), parameter :: GROWTH = 1048576   !< By which a file in memory grows [bytes].
    integer, parameter :: TEXT_LENGTH = 64           !< Of a text that is read back.
@@ -241,21 +241,22 @@ contains
       call h5aclose_f(attribute, status)
    end function get_text
 
-   !> Length of a list, 0 if the file does not contain it or its rank is not 1.
-   integer function extent_of(file, name) result(length)
+   !> Extents of a list or table; 0 where it has no such dimension, or the file does not contain it.
+   function extents_of(file, name) result(dims)
       type(h5_t), intent(in) :: file
       character(*), intent(in) :: name
+      integer :: dims(2)
       integer(hid_t) :: set
-      integer(hsize_t) :: dims(2)
+      integer(hsize_t) :: found(2)
       integer :: status, rank
 
-      length = 0
+      dims = 0
       call h5dopen_f(file%id, name, set, status)
       if (status < 0) return
-      call extent_of_set(set, rank, dims)
-      if (rank == 1) length = int(dims(1))
+      call extent_of_set(set, rank, found)
+      dims = int(min(found, int(huge(0), hsize_t)))
       call h5dclose_f(set, status)
-   end function extent_of
+   end function extents_of
 
    subroutine extent_of_set(set, rank, dims)
       integer(hid_t), intent(in) :: set

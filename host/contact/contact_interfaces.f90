@@ -2,6 +2,8 @@
 !> Contacts in the equations: current coordinates go to the kernels, their forces and slopes to the unknowns. Without
 !> contacts nothing is allocated and nothing is done.
 module contact_interfaces
+   use archive, only: archive_t
+   use texts, only: whole
    use kinds, only: wp
    use contact_friction, only: friction_t, has_friction
    use contact_geometry, only: contact_geometry_t, contact_prepare
@@ -20,7 +22,7 @@ module contact_interfaces
              tie_to_plate, plate_surface
    public :: begin_friction, follow_friction, friction_turns, accept_friction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
-             contact_forces, mean_contact_forces, rounding_of_ties, stretch_ties
+             contact_forces, mean_contact_forces, rounding_of_ties, stretch_ties, exchange_contacts
 
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Of a displacement: of the node, and of its place by three unknowns.
 
@@ -564,4 +566,31 @@ contains
          end do
       end subroutine gather
    end function contact_forces
+
+   !> Exchanges with an archive what contacts carry from step to step: tractions of friction, and the pairs of unknowns
+   !> that they have brought together, on which the ordering of the matrix depends.
+   subroutine exchange_contacts(dofs, contacts, archive)
+      type(dofs_t), intent(in) :: dofs
+      type(contacts_t), intent(inout) :: contacts
+      type(archive_t), intent(inout) :: archive
+      integer, allocatable :: pairs(:)
+      integer :: i
+
+      if (.not. allocated(contacts%interfaces)) return
+      do i = 1, size(contacts%interfaces)
+         associate (t => contacts%interfaces(i))
+            if (t%rubs) call archive%exchange('friction_'//whole(i), t%friction%traction, 'kPa', &
+                                              'traction of every slave node of a contact with friction')
+         end associate
+      end do
+      if (allocated(contacts%extra)) pairs = reshape(contacts%extra, [size(contacts%extra)])
+      call archive%exchange_allocatable('pairs', pairs, '-', &
+                                        'pairs of unknowns that contacts brought into the matrix')
+      if (.not. archive%reading .or. .not. allocated(pairs)) return
+      if (any(pairs < 1 .or. pairs > dofs%n) .or. mod(size(pairs), 2) /= 0) then
+         call archive%refuse()
+      else
+         contacts%extra = reshape(pairs, [2, size(pairs)/2])
+      end if
+   end subroutine exchange_contacts
 end module contact_interfaces

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> The discrete problem: mesh, geometry at the quadrature points, laws of every region, and what a state consists of.
 module porous_domain
+   use archive, only: archive_t
    use exit_codes, only: EXIT_ELEMENT
    use unknown_fields, only: FIELDS
    use kinds, only: wp, PI
@@ -13,7 +14,8 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state
+             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state, &
+             exchange_state
    public :: COUPLED, DRAINED, UNDRAINED, DRY
 
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
@@ -346,4 +348,31 @@ contains
       to%s(:) = from%s
       to%s_rate(:) = from%s_rate
    end subroutine copy_small
+
+   !> Exchanges a state with an archive. Gravity, parts of the ground and laws follow from the scene and the time.
+   subroutine exchange_state(domain, state, archive)
+      type(domain_t), intent(in) :: domain
+      type(state_t), intent(inout) :: state
+      type(archive_t), intent(inout) :: archive
+      real(wp), allocatable :: table(:, :)
+      integer :: variables(size(domain%regions)), i, rows
+
+      call archive%exchange('time', state%time, 's', 'time')
+      call archive%exchange('x', state%x, 'm, kPa', 'unknowns u_r, u_z, p_w, p_c of every node')
+      call archive%exchange('v', state%v, 'm/s, kPa/s', 'their rates')
+      call archive%exchange('a', state%a, 'm/s2', 'accelerations')
+      call archive%exchange('stress', state%stress, 'kPa', &
+                            'effective stress of every quadrature point, tension positive')
+      ! State variables of a point where all have as many, else 1.
+      variables = [(domain%regions(i)%law%n_state, i=1, size(variables))]
+      rows = variables(domain%region_of(1))
+      if (any(variables(domain%region_of) /= rows)) rows = 1
+      table = reshape(state%state, [rows, size(state%state)/max(1, rows)])
+      call archive%exchange('state', table, 'of the material', &
+                            'state variables of every quadrature point; one list where laws differ')
+      state%state = reshape(table, [size(table)])
+      call archive%exchange('e', state%e, '-', 'void ratio')
+      call archive%exchange('s', state%s, '-', 'degree of saturation')
+      call archive%exchange('s_rate', state%s_rate, '1/s', 'its rate')
+   end subroutine exchange_state
 end module porous_domain

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Output: histories at points, the ledger, and the fields at the end of every stage and in between.
 module output_tables
+   use archive, only: archive_t
    use kinds, only: wp
    use reaction_rows, only: reaction_columns, reaction_row
    use contact_rows, only: contact_columns, contact_row, contact_nodes
@@ -16,7 +17,7 @@ module output_tables
                        NUMBERS
    use run_observer, only: step_report_t
    use run_state, only: run_t
-   use run_summary, only: peaks_t, new_peaks
+   use run_summary, only: peaks_t, new_peaks, exchange_peaks
    use scene_types, only: point_t, NAME_LENGTH, FINGERPRINT_LENGTH
    use faults, only: fault_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS
@@ -24,7 +25,7 @@ module output_tables
    private
    public :: tables_t, open_tables, check_tables, write_history, write_ledger, write_contacts, write_fields, &
              write_points, hand_over_tables
-   public :: write_contact_nodes, write_reactions, close_reactions, close_tables, flush_tables
+   public :: write_contact_nodes, write_reactions, close_reactions, close_tables, flush_tables, exchange_tables
 
    character(4), parameter :: COLUMNS(14) = [character(4) :: 'u_r', 'u_z', 'p_w', 'p_c', 'v_r', 'v_z', 'a_r', 'a_z', &
       's_rr', 's_zz', 's_tt', 's_rz', 'e', 'S_w']
@@ -79,6 +80,24 @@ contains
          end if
       end subroutine open_one
    end subroutine open_tables
+
+   !> Exchanges with an archive how far the files of a run reach.
+   subroutine exchange_tables(points, tables, archive)
+      integer, intent(in) :: points   !< Named points of the scene.
+      type(tables_t), intent(inout) :: tables
+      type(archive_t), intent(inout) :: archive
+
+      call archive%exchange('origin', tables%origin)
+      call archive%exchange('histories_bytes', tables%history%bytes, '-', 'bytes of histories.csv')
+      call archive%exchange('ledger_bytes', tables%ledger%bytes, '-', 'bytes of ledger.csv')
+      call archive%exchange('contact_bytes', tables%contact%bytes, '-', 'bytes of contact.csv')
+      call archive%exchange('reactions_bytes', tables%reactions%bytes, '-', &
+                            'bytes of the table of reactions of the stage')
+      call archive%exchange_allocatable('frames', tables%frames%times, 's', 'times of the fields written so far')
+      if (.not. allocated(tables%frames%times)) call archive%refuse()
+      if (archive%reading) tables%peaks = new_peaks(points)
+      call exchange_peaks(tables%peaks, archive)
+   end subroutine exchange_tables
 
    !> Refuses a folder that does not hold the run of a checkpoint; changes nothing. Fault EXIT_RESTART: its mesh is of
    !> another scene, or a table is missing, too short or cannot be written.

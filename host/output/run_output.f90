@@ -65,7 +65,7 @@ contains
    subroutine step_done(self, model, run, report, checkpoint, fault)
       class(run_output_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
+      type(run_t), intent(inout) :: run
       type(step_report_t), intent(in) :: report
       logical, intent(out) :: checkpoint
       type(fault_t), intent(inout) :: fault

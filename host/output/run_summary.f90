@@ -2,6 +2,7 @@
 !> What a run says at its end: the largest value of every answer, the steps and what kept them short, the warnings
 !> again, and that errors are not known to it.
 module run_summary
+   use archive, only: archive_t
    use kinds, only: wp
    use control_state, only: LIMITS, LIMIT_NAMES
    use model_types, only: model_t
@@ -14,7 +15,7 @@ module run_summary
    use warnings, only: repeat_warnings
    implicit none (type, external)
    private
-   public :: peaks_t, new_peaks, note_peaks, print_summary, counted
+   public :: peaks_t, new_peaks, exchange_peaks, note_peaks, print_summary, counted
 
    integer, parameter :: DIGITS_SAID = 3   !< Of a value; of a time as many as tell it from that of the step before.
 
@@ -32,6 +33,18 @@ contains
 
       allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
    end function new_peaks
+
+   !> Exchanges peaks, made by new_peaks, with an archive.
+   subroutine exchange_peaks(peaks, archive)
+      type(peaks_t), intent(inout) :: peaks
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter('peaks')
+      call archive%exchange('value', peaks%value, 'm, kPa', 'largest unknowns of the named points so far')
+      call archive%exchange('time', peaks%time, 's', 'times of these values')
+      call archive%exchange('dt', peaks%dt, 's', 'steps that led to these values')
+      call archive%leave('peaks')
+   end subroutine exchange_peaks
 
    !> After every accepted step.
    pure subroutine note_peaks(model, state, dt, peaks)

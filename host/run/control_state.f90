@@ -1,13 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> What the control of the time step carries from one step to the next, and what it has seen so far.
 module control_state
+   use archive, only: archive_t
    use kinds, only: wp
-   use error_norms, only: rate_memory_t, new_memory
-   use step_control, only: controller_t
+   use error_norms, only: rate_memory_t, new_memory, exchange_memory
+   use step_control, only: controller_t, exchange_controller
    use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
-   public :: control_state_t, new_control_state
+   public :: control_state_t, new_control_state, exchange_control
    public :: LIMITS, LIMIT_NAMES, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
 
    !> What kept a step from being longer: the first three in the order of the fields.
@@ -43,4 +44,24 @@ contains
       state%rejected = before%rejected
       state%limits = before%limits
    end function new_control_state
+
+   !> Exchanges a control, made by new_control_state, with an archive.
+   subroutine exchange_control(control, archive)
+      type(control_state_t), intent(inout) :: control
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter('control')
+      call exchange_controller(control%controller, archive)
+      call exchange_memory(control%memory, archive)
+      call archive%exchange('t_sudden', control%t_sudden, 's', 'time of the last sudden change')
+      call archive%exchange('fresh', control%fresh, '-', 'accepted steps since then', least=0)
+      call archive%exchange('start_up', control%start_up, 's', 'span in which changes are expected to grow yet')
+      call archive%exchange('rejected', control%rejected, '-', &
+                            'steps repeated because of their error, in the whole run', least=0)
+      call archive%exchange('scale', control%scale, 'm, kPa', 'largest change of every field in the run')
+      call archive%exchange('limits', control%limits, '-', 'steps by what kept them short')
+      call archive%exchange('touching', control%touching, '-', 'whether a contact was closed at the start of the step')
+      call archive%exchange('x_first', control%x_first, 'm, kPa', 'unknowns at the start of the stage')
+      call archive%leave('control')
+   end subroutine exchange_control
 end module control_state

@@ -4,6 +4,7 @@
 !> (+ algorithmic damping).
 !> docs/theory/host.md section 9.
 module energy_ledger
+   use archive, only: archive_t
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use dashpots, only: work_of_dashpots
@@ -14,8 +15,8 @@ module energy_ledger
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: ledger_t, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, imbalance
-   public :: ALARMING_SHARE
+   public :: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, &
+             imbalance, ALARMING_SHARE
 
    !> Energy that a run creates out of nothing, as a share of the largest work done in it, beyond which its results are
    !> unreliable: the balances of the verified scenes close to 1e-3 and better [-].
@@ -370,4 +371,33 @@ contains
                   - (ledger%kinetic - ledger%kinetic_0) - ledger%skeleton - ledger%pores - ledger%contact &
                   - ledger%damping
    end function imbalance
+
+   !> Exchanges a ledger with an archive.
+   subroutine exchange_ledger(ledger, archive)
+      type(ledger_t), intent(inout) :: ledger
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter('ledger')
+      call archive%exchange('kinetic', ledger%kinetic, 'kJ', 'kinetic energy')
+      call archive%exchange('kinetic_0', ledger%kinetic_0, 'kJ', 'kinetic energy at the start')
+      call archive%exchange('skeleton', ledger%skeleton, 'kJ', 'work done on the skeleton')
+      call archive%exchange('pores', ledger%pores, 'kJ', 'work of pore pressures')
+      call archive%exchange('gravity', ledger%gravity, 'kJ', 'work of weight')
+      call archive%exchange('loads', ledger%loads, 'kJ', 'work of loads')
+      call archive%exchange('supports', ledger%supports, 'kJ', 'work of prescribed displacements')
+      call archive%exchange('contact', ledger%contact, 'kJ', 'work done on contacts')
+      call archive%exchange('friction', ledger%friction, 'kJ', 'energy dissipated by sliding')
+      call archive%exchange('seepage', ledger%seepage, 'kJ', 'energy dissipated by seepage')
+      call archive%exchange('damping', ledger%damping, 'kJ', 'energy dissipated by damping')
+      call archive%exchange('outflow', ledger%outflow, 'm3', 'outflow of both fluids, less rain')
+      call archive%exchange('outflow_air', ledger%outflow_air, 'm3', 'outflow of air')
+      call archive%exchange('largest_work', ledger%largest_work, 'kJ', 'largest of the works so far')
+      call archive%exchange('open_0', ledger%open_0, 'kJ', 'what the balance left open where the stage began')
+      call archive%exchange('most_created', ledger%most_created, 'kJ', 'largest energy created so far')
+      call archive%exchange('overdue', ledger%overdue, '-', &
+                            'steps in a row with more created energy than the stage allows')
+      call archive%exchange('tolerated', ledger%tolerated, 'kJ', &
+                            'most that residuals within the tolerance can have done')
+      call archive%leave('ledger')
+   end subroutine exchange_ledger
 end module energy_ledger

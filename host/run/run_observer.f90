@@ -46,7 +46,7 @@ module run_observer
          import :: run_observer_t, model_t, run_t, step_report_t, fault_t
          class(run_observer_t), intent(inout) :: self
          type(model_t), intent(in) :: model
-         type(run_t), intent(in) :: run
+         type(run_t), intent(inout) :: run    !< Only to be kept: what a checkpoint writes it could also restore.
          type(step_report_t), intent(in) :: report
          logical, intent(out) :: checkpoint   !< For the run.
          type(fault_t), intent(inout) :: fault

@@ -2,21 +2,24 @@
 !> State of a run: everything that one step hands to the next.
 module run_state
    use, intrinsic :: iso_fortran_env, only: int64
+   use archive, only: archive_t
    use kinds, only: wp
    use contact_drainage, only: drainage_t
-   use control_state, only: control_state_t
-   use energy_ledger, only: ledger_t
+   use contact_interfaces, only: exchange_contacts
+   use control_state, only: control_state_t, new_control_state, exchange_control
+   use energy_ledger, only: ledger_t, exchange_ledger
    use equation_assembly, only: assembly_t
    use initial_conditions, only: tension_t
    use linear_system, only: system_t
+   use model_types, only: model_t, gravity_at
    use prescribed_values, only: constraint_t
-   use porous_domain, only: state_t
+   use porous_domain, only: state_t, copy_state, exchange_state
    use pressure_alarm, only: lines_t
-   use sparsity_pattern, only: pattern_t
+   use sparsity_pattern, only: pattern_t, make_pattern
    use water_balance, only: water_t
    implicit none (type, external)
    private
-   public :: run_t, stage_state_t
+   public :: run_t, stage_state_t, exchange_run
 
    !> Place in the stages, and the step size.
    type :: stage_state_t
@@ -55,4 +58,56 @@ module run_state
       logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.
       real(wp) :: seconds_output = 0.0_wp      !< Wall time.
    end type run_t
+contains
+   !> Exchanges a prepared run with an archive, between two steps. What is restored goes on to the last digit: loads,
+   !> supports and the flow that is subtracted follow from the scene, and the ordering of the equations from their
+   !> pattern.
+   subroutine exchange_run(model, run, archive)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(archive_t), intent(inout) :: archive
+
+      call exchange_stage_state(size(model%stages), run%at, archive)
+      call archive%exchange('steps', run%steps, '-', 'steps', least=0)
+      call archive%exchange('iterations', run%iterations, '-', 'linear solves', least=0)
+      call archive%exchange('cuts', run%cuts, '-', 'cuts', least=0)
+      call archive%exchange('rate_evaluations', run%rate_evaluations, '-', 'rate evaluations of the material')
+      call exchange_state(model%domain, run%state, archive)
+      call archive%exchange('largest', run%system%largest, 'kN', 'largest scale of every field')
+      if (allocated(run%damping_stress)) call archive%exchange('damping_stress', run%damping_stress, 'kPa', &
+         'stress of the damping in proportion to the stiffness')
+      if (allocated(run%constraint%dashpots)) call archive%exchange('offset', run%constraint%offset, 'kN, m3/s', &
+         'flow that is subtracted, forces that hold the ground')
+      if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
+                                                           size(model%contacts))
+      call exchange_control(run%control, archive)
+      call exchange_ledger(run%ledger, archive)
+      call exchange_contacts(model%dofs, run%system%contacts, archive)
+      if (.not. archive%reading .or. .not. archive%is_intact()) return
+      run%state%gravity = gravity_at(model, run%state%time)
+      call copy_state(run%state, run%next)
+      if (.not. allocated(run%system%contacts%extra)) return
+      call make_pattern(model%dofs%n, model%dofs%element, run%system%contacts%extra, run%pattern)
+      deallocate (run%assembly%values)
+      allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
+   end subroutine exchange_run
+
+   subroutine exchange_stage_state(stages, at, archive)
+      integer, intent(in) :: stages
+      type(stage_state_t), intent(inout) :: at
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter('stage')
+      call archive%exchange('number', at%stage, '-', 'number of the stage', least=1, most=stages)
+      call archive%exchange('step', at%step, '-', 'steps done in the stage', least=0)
+      call archive%exchange('cuts_in_force', at%cuts, '-', 'cuts in force', least=0)
+      call archive%exchange('good', at%good, '-', 'accepted steps since the last cut or growth', least=0)
+      call archive%exchange('t_start', at%t_start, 's', 'start of the stage')
+      call archive%exchange('nominal', at%nominal, 's', 'step without cuts')
+      call archive%exchange('factor', at%factor, '-', 'share of the step without cuts')
+      call archive%exchange_allocatable('x_start', at%x_start, 'm, kPa', 'unknowns at the start of the stage')
+      call archive%exchange_allocatable('sudden', at%sudden, 'kN', &
+         'what acted at once at the start of the stage and is applied evenly over it')
+      call archive%leave('stage')
+   end subroutine exchange_stage_state
 end module run_state

@@ -11,12 +11,13 @@
 !> root accumulates; a test holds both against the amplification matrix).
 !> docs/theory/host.md section 4.5.
 module error_norms
+   use archive, only: archive_t
    use kinds, only: wp
    use generalised_alpha, only: scheme_t, STATIC, QUASI_STATIC, DYNAMIC
    implicit none (type, external)
    private
-   public :: rate_memory_t, new_memory, shift_rates, local_errors, remember, forget, constant_of_accelerations, &
-             constant_of_rates, rms
+   public :: rate_memory_t, new_memory, exchange_memory, shift_rates, local_errors, remember, forget, &
+             constant_of_accelerations, constant_of_rates, rms
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    real(wp), parameter :: BENT = 1.0_wp/12   !< Mean deviation of a bent path from the straight step, of dt**2 x''.
@@ -40,6 +41,18 @@ contains
       allocate (memory%rate(fields, nodes), memory%s_rate(points), source=0.0_wp)
       allocate (memory%base_rate(fields, nodes), memory%base_s_rate(points), source=0.0_wp)
    end function new_memory
+
+   !> Exchanges a memory, made by new_memory, with an archive.
+   subroutine exchange_memory(memory, archive)
+      type(rate_memory_t), intent(inout) :: memory
+      type(archive_t), intent(inout) :: archive
+
+      call archive%exchange('rates_known', memory%known, &
+                            'rates of the step before are known, with nothing sudden since')
+      call archive%exchange('rates_dt', memory%dt, 's', 'step from those rates to the present ones')
+      call archive%exchange('rate', memory%rate, 'm/s, kPa/s', 'rates of the unknowns one step back')
+      call archive%exchange('s_rate', memory%s_rate, '1/s', 'rates of saturation one step back')
+   end subroutine exchange_memory
 
    !> C of the leading error of a step for accelerations [-]. 1/12 + 3/8 (l_a - l_f)**2: docs/theory/host.md section
    !> 4.5; for rho_inf = 1 Zienkiewicz & Xie (1991).

@@ -3,10 +3,11 @@
 !> deadband (Gustafsson 1991; Soderlind 2003). It knows no equations: it is given ratios of error to allowance.
 !> docs/theory/host.md section 4.5.
 module step_control
+   use archive, only: archive_t
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: controller_t, new_controller, judge, LARGEST_FACTOR
+   public :: controller_t, new_controller, exchange_controller, judge, LARGEST_FACTOR
 
    real(wp), parameter :: REJECTED_ABOVE = 1.2_wp   !< Ratio of error to allowance beyond which a step is repeated.
    real(wp), parameter :: LARGEST_FACTOR = 2.0_wp, SMALLEST_FACTOR = 0.2_wp
@@ -32,6 +33,17 @@ contains
 
       controller%dt = dt
    end function new_controller
+
+   !> Exchanges a controller between two steps with an archive.
+   subroutine exchange_controller(controller, archive)
+      type(controller_t), intent(inout) :: controller
+      type(archive_t), intent(inout) :: archive
+
+      call archive%exchange('dt', controller%dt, 's', 'next step')
+      call archive%exchange('last_ratio', controller%last_ratio, '-', &
+                            'error over allowance of the last accepted step')
+      call archive%exchange('held', controller%held, 'the last attempt was rejected: the next step is no longer')
+   end subroutine exchange_controller
 
    !> Whether a step stands, and the length of the next attempt. A ratio below zero says that nothing is known of the
    !> error: the step stands and the next is no longer. Gustafsson (1991), Soderlind (2003): docs/theory/host.md section

@@ -66,17 +66,17 @@ def flip():
 
 
 def flip_structure():
-    """One bit of what says where the counters are and what they look like."""
+    """One bit of what says where the number of steps is and what it looks like."""
     with h5py.File(keep) as file:
-        place = h5py.h5o.get_info(file["counters"].id).addr
+        place = h5py.h5o.get_info(file["steps"].id).addr
     data = bytearray(raw())
     data[place + 40] ^= 1
     bad.write_bytes(data)
 
 
-def foreign_counters(number, value):
-    """Counters that no run writes, under a good checksum."""
-    return lambda: altered(lambda file: file["counters"].__setitem__(number, value))
+def foreign(name, value):
+    """A count that no run writes, under a good checksum."""
+    return lambda: altered(lambda file: file[name].__setitem__(0, value))
 
 
 def drop(file):
@@ -214,7 +214,7 @@ def test_uninterrupted_run():
     child.wait()
     check("killed on the way", killed)
     with h5py.File(half / "checkpoint.h5") as file:
-        step = int(file["counters"][4])
+        step = int(file["steps"][0])
         kept = {name: dict(item.attrs) for name, item in file.items() if name.startswith("control_")}
         check("what the control of the steps carries is stored by name, with its unit and meaning",
               {"control_dt", "control_held", "control_t_sudden", "control_x_first", "control_rate"} <= set(kept)
@@ -277,10 +277,14 @@ def test_uninterrupted_run():
          "another version"),
         ("damaged bit", flip, text, "damaged"),
         ("damaged structure", flip_structure, text, "damaged"),
-        ("stage that is not there", foreign_counters(0, 7.0), text, "damaged"),
-        ("negative counter", foreign_counters(12, -1.0), text, "damaged"),
-        ("counter that is no number", foreign_counters(0, float("nan")), text, "damaged"),
-        ("no counters", lambda: altered(lambda file: file.__delitem__("counters")), text, "damaged"),
+        ("stage that is not there", foreign("stage_number", 7.0), text, "damaged"),
+        ("negative count", foreign("steps", -1.0), text, "damaged"),
+        ("half a step", foreign("steps", 2.5), text, "damaged"),
+        ("count that is no number", foreign("stage_number", float("nan")), text, "damaged"),
+        ("no fields of which there are times", foreign("frames_extent", -1.0), text, "damaged"),
+        ("negative number of fields", foreign("frames_extent", -2.0), text, "damaged"),
+        ("more fields than times of them", foreign("frames_extent", 1e9), text, "damaged"),
+        ("no number of steps", lambda: altered(lambda file: file.__delitem__("steps")), text, "damaged"),
         ("missing entry", lambda: altered(drop), text, "damaged"),
         ("no next step", lambda: altered(lambda file: file.__delitem__("control_dt")), text, "damaged"),
         ("no times of fields", lambda: altered(lambda file: file.__delitem__("frames")), text, "damaged"),
@@ -336,11 +340,11 @@ def test_uninterrupted_run():
     # Counters and lengths beyond 32 bits: a file with a hole is long and takes no room.
     long = work / "long"
     shutil.copytree(half, long)
-    altered(lambda f: f["counters"].__setitem__(7, 2.0*FAR))
+    altered(lambda f: f["rate_evaluations"].__setitem__(0, 2.0*FAR))
     done = run(scene, long, "--verbose", "--restart", bad)
     told = re.search(r" (\d+) rate evaluations", done.stdout)
     check("counter beyond 32 bits", done.returncode == 0 and told and int(told[1]) > 2*FAR, done.stdout + done.stderr)
-    altered(lambda f: f["counters"].__setitem__(8, float(FAR)))
+    altered(lambda f: f["histories_bytes"].__setitem__(0, float(FAR)))
     done = run(scene, long, "--check", "--restart", bad)
     check("length beyond 32 bits: too short", done.returncode == 17
           and "histories.csv is missing, shorter" in done.stderr, done.stderr)
