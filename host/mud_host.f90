@@ -128,7 +128,7 @@ contains
       integer :: k
 
       write (output_unit, '(a)') USAGE, (trim(LINES(k)), k=1, size(LINES))
-      write (output_unit, '(a)') 'Exit codes: host/README.md, "Exit codes".'
+      write (output_unit, '(a)') 'Exit codes: host/OUTPUT.md, "Exit codes".'
    end subroutine print_help
 
    !> Whether the run could go on from the checkpoint, in its folder.

@@ -16,7 +16,7 @@ module retention_groups
 
    real(wp), parameter :: SMALLEST = 1.0e-30_wp
    type(key_t), parameter :: RETENTION_KEYS(*) = [ &
-      key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see README', &
+      key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see host/SCENE.md', &
             'bilogarithmic|van_genuchten|power|table|saturated'), &
       key_t('retention', 'p_a', 'n', '5.0', SMALLEST, UNBOUNDED, 'air entry of the bilogarithmic law [kPa]', &
             acts='law=bilogarithmic'), &

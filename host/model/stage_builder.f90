@@ -15,7 +15,7 @@ module stage_builder
                                               !< (docs/theory/host.md section 4.1).
 contains
    !> rho_inf and the measure of Newton's error of the stages that the scene leaves them open in. docs/theory/host.md
-   !> sections 4.1, 5.1 and, of quasi-static stages, 11.
+   !> sections 4.1 and 5.1.
    pure subroutine choose_schemes(model)
       type(model_t), intent(inout) :: model
       logical :: touching

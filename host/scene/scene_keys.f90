@@ -135,7 +135,7 @@ contains
       call k%flag('initial_flow', scene%subtract_flow, 'drain|subtract', 'subtract', &
                   'subtract: the initial flow is maintained', ':p_w')
       call k%number('step_tolerance', scene%step_tolerance, 1.0e-8_wp, 0.5_wp, &
-                    'local tolerance of controlled steps [-], see host/README.md')
+                    'local tolerance of controlled steps [-], see host/SCENE.md')
       call k%texts('goals', scene%goals, 'answers that mud_study measures, as ''top.u_z''; default: all')
       call k%whole('threads', scene%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
       call k%flag('factors', scene%reuse_factors, 'reuse|fresh', 'reuse', &
@@ -421,7 +421,7 @@ contains
                     'energy created out of nothing that ends the run, share of the largest work [-]')
       call k%number('tolerance', stage%tolerance, 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]')
       call k%word('measure', stage%measure, 'forces|residual|correction|change|auto', &
-                  'measure of the error that ends the iteration, see host/README.md')
+                  'measure of the error that ends the iteration, see host/SCENE.md')
       call k%whole('max_iterations', stage%max_iterations, 1, 1000, 'Newton: linear solves before the step is cut')
       call k%flag('predictor', stage%no_predictor, 'rates|none', 'none', 'start of the iteration')
       call k%flag('start', stage%solve_start, 'solve|zero', 'solve', 'accelerations at the start of a dynamic stage', &
@@ -478,7 +478,7 @@ contains
       load%scene_item_t = item_of(k%group)
       call k%text('group', load%group_name, 'boundary (for force: node group)', REQUIRED)
       call k%word('kind', load%kind, 'pressure|shear_r|shear_z|water|rain|air|force_r|force_z|moment', &
-                  'kind of load, see host/README.md', REQUIRED)
+                  'kind of load, see host/SCENE.md', REQUIRED)
       load%turns = load%kind == LOAD_MOMENT
       if (load%turns) load%kind = LOAD_FORCE_Z
       call k%number('value', load%value, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN, kN m]', &

@@ -14,7 +14,7 @@ from .errors import InputError
 
 
 class HostRun:
-    """The output folder of a run of mud_host (host/README.md, "Output"). Units m, s, kPa; tension positive.
+    """The output folder of a run of mud_host (host/OUTPUT.md). Units m, s, kPa; tension positive.
 
     >>> run = HostRun("out")
     >>> time, settlement = run.histories["time"], run.histories["top.u_z"]

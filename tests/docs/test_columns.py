@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""host/README.md gives a unit and a meaning for every column of the tables that mud_host writes."""
+"""host/OUTPUT.md gives a unit and a meaning for every column of the tables that mud_host writes."""
 import re
 import subprocess
 
@@ -25,7 +25,7 @@ KINDS = {"histories", "ledger", "contact", "reactions", "nodes", "points"}
 
 def described(text):
     """The words in backticks of the first column of the table of columns; `a` ... `b` stands for a_FIELD to b_FIELD."""
-    section = text.split("Columns of the tables")[1].split("\n\nFields of elements")[0]
+    section = text.split("\n## Columns\n")[1].split("\n## ")[0]
     names, rows = set(), [line.split(" | ") for line in section.splitlines() if line.startswith("| `")]
     for name, unit, meaning in rows:
         if not unit.strip() or not meaning.strip(" |"):
@@ -37,7 +37,7 @@ def described(text):
 
 
 def test_the_manual_has_the_table():
-    names = described((root / "host/README.md").read_text(encoding="utf-8"))
+    names = described((root / "host/OUTPUT.md").read_text(encoding="utf-8"))
     check("the manual has the table", len(names) > 40, names)
     written = set()
     for name, text in (("drain", DRAIN), ("block", BLOCK)):

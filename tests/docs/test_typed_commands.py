@@ -11,9 +11,10 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from checking import build, check, light, root, work
 import pages  # noqa: E402
 
-PAGES = ["README.md", "umat/README.md", "python/README.md", "host/README.md", "drivers/README.md",
-         "calibration/README.md", "clients/README.md", *sorted(str(path.relative_to(root)) for folder in (
-             "docs/tutorials", "docs/how-to") for path in (root / folder).glob("*.md"))]
+PAGES = ["README.md", "umat/README.md", "python/README.md", "host/README.md", "host/SCENE.md", "host/OUTPUT.md",
+         "drivers/README.md", "calibration/README.md", "clients/README.md",
+         *sorted(str(path.relative_to(root)) for folder in ("docs/tutorials", "docs/how-to")
+                 for path in (root / folder).glob("*.md"))]
 PROGRAM = re.compile(r"^(?:\./)?(?:[\w.]+/)*(?:check|demo|run|cmake|cpack|pip|gcc|gfortran|ninja|reuse|fpm|conda|spack|"
                      r"mud_\w+|python3|scripts/\w+)(?= |$)")
 # The beginning of a command: the test that types it, and what of it stands in that test.

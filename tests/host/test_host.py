@@ -118,7 +118,7 @@ def test_exit_code():
               and len(done.stderr.splitlines()) == 1 and not (work / "--quiet").exists(), done.stderr)
     done = subprocess.run([host, "--help"], capture_output=True, text=True)
     check("help", done.returncode == 0 and "default: output" in done.stdout
-          and "xit codes: host/README.md" in done.stdout
+          and "xit codes: host/OUTPUT.md" in done.stdout
           and "--restart" in done.stdout and max(map(len, done.stdout.splitlines())) <= 120, done.stdout)
     done = subprocess.run([host, work / "scene.nml", "--output", "/proc/nowhere"], capture_output=True, text=True,
                           env=environment)
@@ -133,7 +133,7 @@ def test_exit_code():
         u_z = list(tables.numbers(work / "first/histories.csv")[-1].values())[2]
         check("first scene: 1 mm", abs(u_z + 1e-3) < 1e-12, u_z)
     for code in re.findall(r"EXIT_\w+ = (\d+)", (root / "host/base/exit_codes.f90").read_text()):
-        check(f"the manual names exit code {code}", f"| {code} |" in manual)
+        check(f"the reference names exit code {code}", f"| {code} |" in (root / "host/OUTPUT.md").read_text())
 
     # A plate that bounces on its penalty: generalised-alpha with rho_inf = 0.8 gains energy at every opening and
     # closing where a period of the penalty has few steps (five times the energy of the fall here); rho_inf = 0 never

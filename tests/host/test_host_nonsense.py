@@ -17,7 +17,7 @@ from checking import add, build, check, light, nightly, root, work
 from nonsense import Grammar  # noqa: E402
 
 HOST = build / "host/mud_host"
-TABLE = (root / "host/README.md").read_text(encoding="utf-8").split("## Exit codes")[1]
+TABLE = (root / "host/OUTPUT.md").read_text(encoding="utf-8").split("## Exit codes")[1]
 CODES = {0, *map(int, re.findall(r"^\| (\d+) \|", TABLE, re.MULTILINE))}
 REFUSALS = {2, 10, 11, 12}
 CRASH = re.compile(r"Fortran runtime error|Backtrace|Sanitizer|runtime error:|SIG[A-Z]+|terminate called")

@@ -26,7 +26,7 @@ except ImportError as problem:
     raise ImportError("studies read scenes with f90nml: pip install 'mud-soil[study]'") from problem
 
 LOOSEST = 0.1  # step tolerance above which nothing differs: steps of flows grow as fast as they may
-# What the host takes where the scene says nothing, of a step tolerance A: a tenth, at most this (host/README.md).
+# What the host takes where the scene says nothing, of a step tolerance A: a tenth, at most this (host/SCENE.md).
 NEWTON_LARGEST, STRESS_LARGEST, SHARE = 1e-4, 1e-3, 0.1
 DEFAULT_TOLERANCE = 1e-3  # of the steps that a stage chooses
 GIVEN_NEWTON = 1e-3  # the same of stages with given steps
