@@ -13,10 +13,9 @@ import sys
 
 from ..errors import InputError
 from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
-from .effects import LEAST_RUN, SHARE, Effects, Silent
+from .effects import LEAST_RUN, SHARE, Effects, Silent, write_scene
 from .runs import BudgetUsedUp, Failed, Scene
 from .pictures import accuracy_picture, effects_picture, price_picture
-from .switches import plain, settled, write_scene
 
 EXIT_INPUT, EXIT_INTERRUPTED = 2, 130
 LEVELS = (0.1, 0.03, 0.01)  # of price
@@ -191,7 +190,7 @@ def reduced(scene: Scene, args) -> pathlib.Path:
     if rows:
         study.write(scene.folder / "effects.csv")
         effects_picture(scene.folder / "effects.png", rows, study.tolerance)
-    write_scene(study.reduced() if rows else settled(plain(scene.groups)), path, scene.path.parent)
+    write_scene(study.reduced(), path, scene.path.parent)
     untried = [r.name for r in study.rows if not (r.by_hand or r.on or (rows and r.influence is not None))]
     if untried:
         print(

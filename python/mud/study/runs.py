@@ -34,15 +34,13 @@ WORDS_EVERY = 10.0  # a run that lasts longer says every so many seconds where i
 LOCALISED = 0.05  # share of the work that is done where the soil has lost ellipticity [-]
 
 
-CUT_OFF = "it takes more processor time than it may"
-
-
 class Failed(Exception):
-    """A run that ended before its time; the sentence says why, the code is that of mud_host."""
+    """A run that ended before its time: a sentence, exit code and last words of mud_host, and whether it took all the
+    processor time that it may."""
 
-    def __init__(self, words: str, code: int = 0):
+    def __init__(self, words: str, code: int = 0, said: str = "", cut: bool = False):
         super().__init__(words)
-        self.code = code
+        self.code, self.said, self.cut = code, said or words, cut
 
 
 class BudgetUsedUp(Exception):
@@ -109,9 +107,7 @@ class Scene:
         self._origin = self._fingerprint()
 
     def list_of(self, group: str) -> list:
-        """Groups of a name, in their order."""
-        found = self.groups.get(group, [])
-        return list(found) if isinstance(found, list) else [found]
+        return list_of(self.groups, group)
 
     @property
     def left(self) -> float:
@@ -140,7 +136,9 @@ class Scene:
             told = self._found(key, most) or self._make(key, keep, most)
             if told["code"] != 0:
                 words = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
-                self.failed[key] = Failed(CUT_OFF if told["code"] == -signal.SIGXCPU else words, told["code"])
+                cut = told["code"] == -signal.SIGXCPU
+                words = "it takes more processor time than it may" if cut else words
+                self.failed[key] = Failed(words, told["code"], "" if cut else told["words"], cut)
                 self.lost += told["processor"]
                 raise self.failed[key]
             folder = self.folder / key.folder
@@ -215,7 +213,7 @@ class Scene:
             raise BudgetUsedUp
         self.made += 1
         self.say(f"   run {self.made}: {key} ...", end="")
-        start, before = time.monotonic(), _processor()
+        start, before = time.monotonic(), processor()
         with open(folder / "said.txt", "w", encoding="utf-8") as said, open(folder / "errors.txt", "w") as errors:
             process = subprocess.Popen(command, stdout=said, stderr=errors, preexec_fn=_limit(most))
             try:
@@ -232,7 +230,7 @@ class Scene:
             "origin": self._origin,
             "words": words,
             "seconds": seconds,
-            "processor": _processor() - before,
+            "processor": processor() - before,
             "code": process.returncode,
             "said": (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip()[-500:],
             "localised": _localised(folder),
@@ -251,6 +249,12 @@ class Scene:
             lines = (folder / "said.txt").read_text(encoding="utf-8", errors="replace").splitlines()
             left = f", {self.left:.0f} s left" if self.left < float("inf") else ""
             self.say(f"\n      {time.monotonic() - start:.0f} s{left}: {lines[-1] if lines else ''}", end="")
+
+
+def list_of(groups, name: str) -> list:
+    """Groups of a name, in their order."""
+    found = groups.get(name, [])
+    return list(found) if isinstance(found, list) else [found]
 
 
 def _ended(process, seconds):
@@ -278,12 +282,8 @@ def _limit(most):
     return lambda: resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 5))
 
 
-def cut_off(words: str) -> bool:
-    """Whether a run took all the processor time that it may."""
-    return words == CUT_OFF
-
-
-def _processor():
+def processor() -> float:
+    """Processor time of all runs that have ended [s]."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 

@@ -29,8 +29,10 @@ def rows_of(scene, build, folder):
         raise RuntimeError(f"{scene.name}: exit code {done.returncode}. {done.stderr.strip()}")
     wanted = {**dict.fromkeys(scene.keeps, "on"), **dict.fromkeys(scene.drops, "off")}
     # Remarks quote sentences of runs; where they were run is no result.
-    return [(scene.name, *(r[n].replace(f"{folder}/", "") for n in NAMES[1:-1]), wanted.get(r["effect"], ""))
+    rows = [(scene.name, *(r[n].replace(f"{folder}/", "") for n in NAMES[1:-1]), wanted.pop(r["effect"], ""))
             for r in tables.rows(pathlib.Path(folder) / "effects.csv")]
+    # What is not even in the table is decided wrongly.
+    return rows + [(scene.name, effect, *[""] * (len(NAMES) - 3), on) for effect, on in wanted.items()]
 
 
 def main(words):
