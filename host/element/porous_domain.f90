@@ -14,9 +14,10 @@ module porous_domain
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
              take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state
-   public :: COUPLED, DRAINED, UNDRAINED, DRY
+   public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
+   integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.
    integer, parameter :: COUPLED = 1     !< Pressures are unknowns of the nodes, fluids flow.
    integer, parameter :: DRAINED = 2     !< Pressures stay as they are given at the start.
    integer, parameter :: UNDRAINED = 3   !< Every element keeps its fluids and has one p_w and one p_c.
@@ -103,7 +104,9 @@ module porous_domain
       real(wp), allocatable :: state(:)       !< State variables, element by element, see before_state.
       real(wp), allocatable :: e(:)           !< void ratio
       real(wp), allocatable :: s(:)           !< degree of saturation
-      real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
+      !> Rate of the degree of saturation (points) [1/s]; after it what flows out through prescribed pressures and
+      !> seepage faces, less the rain: both fluids, air [m3/s]. It follows the scheme as the storage of points does.
+      real(wp), allocatable :: s_rate(:)
       ! Where parts of the ground join or leave, else not allocated. docs/theory/host.md section 14.
       logical, allocatable :: present(:)      !< Parts of the ground in this stage. (elements)
       logical, allocatable :: joins(:)        !< Those that join with it. (elements)
@@ -245,7 +248,7 @@ contains
       allocate (state%state(domain%before_state(size(domain%before_state))), source=0.0_wp)
       allocate (state%e(points), source=0.0_wp)
       allocate (state%s(points), source=1.0_wp)
-      allocate (state%s_rate(points), source=0.0_wp)
+      allocate (state%s_rate(points + OUTFLOWS), source=0.0_wp)
       do e = 1, size(domain%mesh%t6, 2)
          state%e((e - 1)*domain%rule + 1:e*domain%rule) = domain%regions(domain%region_of(e))%void_ratio
       end do

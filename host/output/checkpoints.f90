@@ -23,7 +23,7 @@ module checkpoints
    public :: write_checkpoint, read_checkpoint, CHECKPOINT
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '16', &
+   type(restart_kind_t), parameter :: KIND_OF_FILE = restart_kind_t('checkpoint of mud_host', '17', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
@@ -75,7 +75,7 @@ contains
                   'of the material', 'state variables of every quadrature point; one list where laws differ')
          call put(file, 'e', s%e, '-', 'void ratio')
          call put(file, 's', s%s, '-', 'degree of saturation')
-         call put(file, 's_rate', s%s_rate, '1/s', 'its rate')
+         call put(file, 's_rate', s%s_rate, '1/s, m3/s', 'its rate; the flows out, of both fluids and of air')
       end associate
       if (allocated(run%at%sudden)) call put(file, 'sudden', run%at%sudden, 'kN', &
          'what acted at once at the start of the stage and is applied evenly over it')
