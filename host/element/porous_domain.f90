@@ -16,8 +16,9 @@ module porous_domain
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
              take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state, &
              exchange_state
-   public :: COUPLED, DRAINED, UNDRAINED, DRY
+   public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
+   integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
    integer, parameter :: COUPLED = 1     !< Pressures are unknowns of the nodes, fluids flow.
    integer, parameter :: DRAINED = 2     !< Pressures stay as they are given at the start.
@@ -105,7 +106,9 @@ module porous_domain
       real(wp), allocatable :: state(:)       !< State variables, element by element, see before_state.
       real(wp), allocatable :: e(:)           !< void ratio
       real(wp), allocatable :: s(:)           !< degree of saturation
-      real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
+      !> Rate of the degree of saturation (points) [1/s]; after it what flows out through prescribed pressures and
+      !> seepage faces, less the rain: both fluids, air [m3/s]. It follows the scheme as the storage of points does.
+      real(wp), allocatable :: s_rate(:)
       ! Where parts of the ground join or leave, else not allocated. docs/theory/host.md section 14.
       logical, allocatable :: present(:)      !< Parts of the ground in this stage. (elements)
       logical, allocatable :: joins(:)        !< Those that join with it. (elements)
@@ -247,7 +250,7 @@ contains
       allocate (state%state(domain%before_state(size(domain%before_state))), source=0.0_wp)
       allocate (state%e(points), source=0.0_wp)
       allocate (state%s(points), source=1.0_wp)
-      allocate (state%s_rate(points), source=0.0_wp)
+      allocate (state%s_rate(points + OUTFLOWS), source=0.0_wp)
       do e = 1, size(domain%mesh%t6, 2)
          state%e((e - 1)*domain%rule + 1:e*domain%rule) = domain%regions(domain%region_of(e))%void_ratio
       end do
@@ -373,6 +376,6 @@ contains
       state%state = reshape(table, [size(table)])
       call archive%exchange('e', state%e, '-', 'void ratio')
       call archive%exchange('s', state%s, '-', 'degree of saturation')
-      call archive%exchange('s_rate', state%s_rate, '1/s', 'its rate')
+      call archive%exchange('s_rate', state%s_rate, '1/s, m3/s', 'its rate; the flows out, of both fluids and of air')
    end subroutine exchange_state
 end module porous_domain

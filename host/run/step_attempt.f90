@@ -23,7 +23,7 @@ module step_attempt
    use porous_domain, only: copy_state
    use run_state, only: run_t, stage_state_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
-   use step_size, only: begin_control, prepare_rates, judge_step, shorten_step
+   use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
    use scene_types, only: stage_t
    use strength_builder, only: follow_strengths
    implicit none (type, external)
@@ -97,7 +97,7 @@ contains
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
-      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+      scheme = scheme_of(stage, run, dt)
       if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, model%dofs, scheme, run%state, &
                                                                   run%constraint)
       call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &

@@ -8,7 +8,7 @@ module time_stepping
    use contact_interfaces, only: stretch_ties
    use contact_setup, only: contacts_act
    use convergence, only: control_t, log_t
-   use generalised_alpha, only: scheme_t, make_scheme
+   use generalised_alpha, only: scheme_t
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
    use effect_indicators, only: indicators_of
@@ -17,7 +17,7 @@ module time_stepping
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
    use step_attempt, only: begin_stage, try_step
-   use step_size, only: negligible_changes, next_step, keep_step, is_over
+   use step_size, only: negligible_changes, next_step, scheme_of, keep_step, is_over
    use step_landings, only: LAST_STEP
    use step_booking, only: book_accepted_step
    use energy_alarm, only: check_creation, warn_of_created_energy
@@ -145,7 +145,7 @@ contains
       logical :: checkpoint
 
       associate (stage => model%stages(number), at => run%at)
-         scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+         scheme = scheme_of(stage, run, dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
          if (warns(observer)) call warn_of_penetration(model, run%next%time, run%system%contacts)

@@ -28,10 +28,11 @@ module generalised_alpha
 contains
    !> Coefficients of a step of kind STATIC, QUASI_STATIC or DYNAMIC. Chung & Hulbert (1993), Jansen et al. (2000):
    !> docs/theory/host.md section 4.1, gamma_1 section 4.2.
-   pure function make_scheme(kind, rho_inf, dt) result(scheme)
+   pure function make_scheme(kind, rho_inf, dt, begins) result(scheme)
       integer, intent(in) :: kind
       real(wp), intent(in) :: rho_inf   !< 0 to 1
       real(wp), intent(in) :: dt        !< [s]
+      logical, intent(in), optional :: begins   !< A flow begins: the rates before say nothing. Default: no.
       type(scheme_t) :: scheme
 
       scheme%kind = kind
@@ -40,6 +41,10 @@ contains
       scheme%l_f = 1/(1 + rho_inf)
       scheme%l_p = (3 - rho_inf)/(2*(1 + rho_inf))
       scheme%gamma_1 = 1/(1 + rho_inf)
+      if (present(begins)) then
+         if (begins) scheme%l_p = 1.0_wp
+         if (begins) scheme%gamma_1 = 1.0_wp
+      end if
       scheme%c_p = scheme%l_p/(scheme%gamma_1*dt)
       if (kind == QUASI_STATIC) then
          scheme%l_v = scheme%l_p
