@@ -113,7 +113,7 @@ module porous_domain
       logical, allocatable :: present(:)      !< Parts of the ground in this stage. (elements)
       logical, allocatable :: joins(:)        !< Those that join with it. (elements)
       real(wp) :: growth = 1.0_wp             !< Share of their weight that acts on those that join, at this time [-].
-      !> Laws of the regions in the step that ends with this state, where strength changes with time, else not
+      !> Laws of the regions in the step that ends with this state, where laws change with time, else not
       !> allocated: made for every step, docs/theory/host.md section 15. (regions)
       type(material_slot_t), allocatable :: laws(:)
    end type state_t

@@ -3,7 +3,7 @@
 module boundary_warnings
    use kinds, only: wp
    use given_pressures, only: nodes_with_flow, edges_with_flow
-   use idle_keys, only: add_warning, WARNING_LENGTH
+   use warnings, only: add_warning, WARNING_LENGTH
    use model_types, only: model_t
    use scene_types, only: scene_item_t, acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, &
                           fix_t, PRESCRIBED_P_A

@@ -4,7 +4,7 @@ module mesh_look
    use kinds, only: wp
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
-   use idle_keys, only: add_warning, WARNING_LENGTH
+   use warnings, only: add_warning, WARNING_LENGTH
    use model_types, only: model_t
    use scene_types, only: place_of, scene_item_t
    use texts, only: short, whole

@@ -6,7 +6,7 @@ module start_look
    use generalised_alpha, only: STATIC, DYNAMIC
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
-   use idle_keys, only: add_warning, WARNING_LENGTH
+   use warnings, only: add_warning, WARNING_LENGTH
    use initial_conditions, only: balance_t
    use model_types, only: model_t
    use scene_types, only: acts_in, amplitude_t, place_of, scene_item_t, fix_t, plate_t, LOAD_PRESSURE, LOAD_AIR, &

@@ -16,7 +16,6 @@ module ground_stages
    use run_state, only: run_t
    use scene_types, only: stage_t
    use staged_ground, only: ground_of
-   use strength_builder, only: follow_strengths
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -66,7 +65,6 @@ contains
       type(state_t) :: at_start, same
       type(slopes_t) :: slopes
       type(element_t) :: out
-      logical :: changes
       integer :: e, i, at
 
       run%at%held_up = [(0.0_wp, i=1, model%dofs%n)]
@@ -78,7 +76,8 @@ contains
       at_start%joins = .false.
       at_start%gravity = gravity_at(model, run%at%t_start)
       same = at_start
-      call follow_strengths(model, run%at%t_start, run%at%t_start, same, changes)
+      ! Laws that change with time are those of the start of the stage.
+      if (allocated(run%next%laws)) same%laws = run%next%laws
       do e = 1, size(stays)
          if (stays(e)) cycle
          call compute_element(model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., slopes, &

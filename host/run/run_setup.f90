@@ -13,6 +13,7 @@ module run_setup
    use model_types, only: model_t
    use run_state, only: run_t
    use sparsity_pattern, only: make_pattern
+   use term_registry, only: build_terms
    implicit none (type, external)
    private
    public :: prepare_run
@@ -24,6 +25,8 @@ contains
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
 
+      call build_terms(model, run%terms, fault)
+      if (fault%code /= 0) return
       run%system%reuse = model%reuse_factors
       run%system%sparse%ordering = model%ordering
       call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)

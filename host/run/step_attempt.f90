@@ -21,14 +21,14 @@ module step_attempt
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use porous_domain, only: copy_state
-   use run_state, only: run_t, stage_state_t
+   use run_state, only: run_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
    use scene_types, only: stage_t
-   use strength_builder, only: follow_strengths
+   use solution, only: stage_state_t
    implicit none (type, external)
    private
-   public :: begin_stage, try_step
+   public :: begin_stage, resume_stage, try_step
 
    integer, parameter :: CUTS_IN_VAIN = 2   !< At the start of a static stage, until what acts at once is spread.
    real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Of the numbers at the present time: its rounding.
@@ -41,11 +41,11 @@ contains
       integer, intent(in) :: number
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      logical :: changes
 
       associate (stage => model%stages(number))
-         call follow_strengths(model, run%state%time, run%state%time, run%next, changes)
          run%at = stage_state_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
+         call begin_terms(model, .true., run, fault)
+         if (fault%code /= 0) return
          call change_ground(model, number, .true., run, fault)
          if (fault%code /= 0) return
          call prescribe(model, stage, run%state%time, run, fault)
@@ -62,6 +62,28 @@ contains
       end associate
    end subroutine begin_stage
 
+   !> Puts a run that is taken up in the middle of its stage there.
+   subroutine resume_stage(model, run, fault)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      call begin_terms(model, .false., run, fault)
+      if (fault%code == 0) call change_ground(model, run%at%stage, .false., run, fault)
+   end subroutine resume_stage
+
+   subroutine begin_terms(model, begins, run, fault)
+      type(model_t), intent(in) :: model
+      logical, intent(in) :: begins   !< Else the run is in the middle of its stage.
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      do i = 1, size(run%terms)
+         if (fault%code == 0) call run%terms(i)%term%begin_stage(model, begins, run%solution_t, fault)
+      end do
+   end subroutine begin_terms
+
    !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
    !> docs/theory/host.md section 4.4. Faults: that of find_impervious_nodes; that of explain_failure where no cut is
    !> left, the linear solver failed, or the matrix is singular by no soft point.
@@ -77,7 +99,8 @@ contains
       type(scheme_t) :: scheme
       real(wp), allocatable :: a0(:, :)
       real(wp) :: share
-      logical :: lost, changes
+      integer :: i
+      logical :: lost
 
       accepted = .false.
       if (dt < shortest_step(stage, run)) then
@@ -91,9 +114,10 @@ contains
       if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, dt, run)
       run%next%gravity = gravity_at(model, run%state%time + dt)
       run%next%growth = growth_at(stage, run, run%state%time + dt)
-      call follow_strengths(model, run%state%time, run%state%time + dt, run%next, changes)
-      ! Slopes know nothing of a strength that changes.
-      if (changes) run%assembly%slopes%known = .false.
+      do i = 1, size(run%terms)
+         if (fault%code == 0) call run%terms(i)%term%before_step(model, dt, run%solution_t, fault)
+      end do
+      if (fault%code /= 0) return
       call prescribe(model, stage, run%state%time + dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)

@@ -52,7 +52,7 @@ contains
       case (OF_FRICTION)
          present = any(scene%contacts%options%friction > 0.0_wp .or. scene%contacts%options%cohesion > 0.0_wp)
       case (OF_STRENGTH)
-         present = size(scene%strengths) > 0
+         present = any(scene%groups%name == EFFECTS(effect))
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
@@ -124,7 +124,7 @@ contains
          scene%contacts%options%friction = 0.0_wp
          scene%contacts%options%cohesion = 0.0_wp
       case (OF_STRENGTH)
-         scene%strengths = scene%strengths(:0)
+         scene%kept = scene%kept .and. scene%groups%name /= EFFECTS(effect)
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case default

@@ -340,7 +340,7 @@ REGIONS = [
 
 # What the field does to a boundary: (title, (file below host, text that stands there once, its replacement), ...).
 LIMITS, BALANCE, STAGED = "solver/limited_pressures.f90", "element/porous_balance.f90", "run/ground_stages.f90"
-STRENGTHS, STEP, FRICTION = "model/strength_builder.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
+STRENGTHS, STEP, FRICTION = "terms/strength.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
 
 FIELD = [
     ("a face draws in water", (LIMITS, "if (constraint%fixed(i) .and. side < -least) then", "if (constraint%fixed(i) .and. side < -huge(least)) then")),
@@ -360,11 +360,11 @@ FIELD = [
      (STAGED, "load = load - (1 - growth_at(stage, run, time))*run%at%held_up", "load = load")),
     ("the weight of new ground is there at once", (STEP, "run%next%growth = growth_at(stage, run, run%state%time + dt)", "run%next%growth = 1.0_wp")),
     ("strength falls by the whole factor in every step",
-     (STRENGTHS, "before = [(factor_at(model, model%strengths(i)%amplitude, from), i=1, size(before))]", "before = 1.0_wp")),
+     (STRENGTHS, "before = [(factor_at(model, list(i)%amplitude, from), i=1, size(before))]", "before = 1.0_wp")),
     ("strength of the start of a step",
-     (STRENGTHS, "after = [(factor_at(model, model%strengths(i)%amplitude, until), i=1, size(after))]", "after = before")),
+     (STRENGTHS, "after = [(factor_at(model, list(i)%amplitude, until), i=1, size(after))]", "after = before")),
     ("every material follows every history of strength",
-     (STRENGTHS, "own = model%strengths%material_name == model%regions(i)%material_name", "own = model%strengths%place > 0")),
+     (STRENGTHS, "own = list%material_name == model%regions(i)%material_name", "own = list%place > 0")),
     ("a history of strength may begin anywhere", (STRENGTHS, "abs(first - 1) > SAME", "first > 2*SAME/SAME")),
     ("the largest value of a strength is not tried", (STRENGTHS, "do i = 1, size(factors)", "do i = 2, size(factors)")),
 ]

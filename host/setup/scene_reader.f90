@@ -44,6 +44,7 @@ contains
       scene%fingerprint = fingerprint_of(groups)
       scene%hashes = hashes_of(groups)
       scene%groups = groups
+      scene%kept = [(.true., i=1, size(groups))]
       call make_lists(scene)
       ! &scene says how others are read.
       table%group = groups(findloc([(groups(i)%name, i=1, size(groups))], 'scene', dim=1))

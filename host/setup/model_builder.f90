@@ -9,7 +9,6 @@ module model_builder
    use degrees_of_freedom, only: number_unknowns
    use free_bodies, only: check_bodies
    use staged_ground, only: check_staged_ground, check_sides
-   use strength_builder, only: build_strengths
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
    use mesh_look, only: check_carried
@@ -46,7 +45,6 @@ contains
       if (fault%code == 0) call build_plates(model, fault)
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
       if (fault%code == 0) call build_boundaries(model, fault)
-      if (fault%code == 0) call build_strengths(model, fault)
       if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
       if (fault%code == 0) call check_staged_ground(model, fault)
