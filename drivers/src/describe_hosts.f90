@@ -2,7 +2,7 @@
 !> A material as other programs read it: cards, JSON, XML and plain numbers. Every number is written with as many digits
 !> as bring back its bits.
 module describe_hosts
-   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: output_unit
    use describe_tables, only: text, number, version
    use faults, only: fault_t, raise, EXIT_INPUT

@@ -40,6 +40,18 @@ def use_without_only(text):
     return [f"{n}: use {module} without only" for n, module, only in uses(text) if not only]
 
 
+def idle_imports(text):
+    """Names that a use statement brings and no other statement has. Two stand behind every @assert of pFUnit."""
+    brought, had = [], {"anyexceptions", "sourcelocation"}
+    for n, line in code_lines(text):
+        if USE.match(line):
+            brought += [(n, name.split("=>")[0].strip()) for name in re.split(", *", line.rpartition(":")[2])]
+        else:
+            had |= set(re.findall(r"\b[a-z]\w*|(?<=\d_)\w+", line.lower()))
+    return [f"{n}: {name} is imported and not used" for n, name in brought
+            if re.fullmatch(r"\w+", name) and name.lower() not in had]
+
+
 def upward_use(text, name, order, allowed_beside=frozenset()):
     """Modules of the library that `name` may not see: those at or above its own place."""
     return [f"{n}: {name} uses {module}, which is not below it" for n, module, _ in uses(text)
@@ -154,6 +166,8 @@ def planted_offences():
     cases = [
         ("use without only", use_without_only, "use mud_a", "use mud_a, only: b"),
         ("continued use", use_without_only, "use, intrinsic :: iso_x", "use, intrinsic :: iso_x, only: &\n  c"),
+        ("idle import", idle_imports, "use a, only: b, &\n   c\nd = b ! c",
+         "use, intrinsic :: a, only: b, c => d\ne = c(1.0_B)"),
         ("upward use", lambda t: upward_use(t, "mud_b", order), "use mud_c, only: x", "use mud_a, only: x"),
         ("inner use", lambda t: inner_use(t, {"mud_a"}), "use mud_a, only: x", "use mud_interface, only: x"),
         ("impure function", not_pure, "real(wp) function f(x)", "pure real(wp) function f(x)"),
@@ -217,6 +231,7 @@ def test_the_sources_keep_the_rules():
         ("the host's view of the library uses nothing of it",
          over(sources("umat/include/*.f90"), lambda t: inner_use(t, set(inside)))),
         ("every use says only", over(library + clients + helpers + suites, use_without_only)),
+        ("every import is used", over(library + clients + helpers + suites, idle_imports)),
         ("core procedures are pure", over(core_files, not_pure)),
         ("core and abi have no module variables, but for what was said already",
          over([file for file in library if file.stem != "mud_once"], module_variables)),

@@ -7,7 +7,7 @@ module mud_arguments
    use mud_params, only: completed, is_length
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, P_SHEAR_ORDER, &
       S_LAYOUT, S_SUCTION
-   use mud_status, only: fail, mud_status_t, MUD_OK, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
+   use mud_status, only: fail, mud_status_t, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
    use mud_tensor, only: is_finite
    use mud_units, only: stress_unit, LARGEST_STRESS

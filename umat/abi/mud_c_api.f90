@@ -11,9 +11,8 @@ module mud_c_api
       statev_index, statev_name, &
       statev_variable
    use mud_scanning, only: check_curves
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, &
-      MUD_BAD_OPTION, &
-      MUD_BAD_PROPS, MUD_BAD_INPUT, ON_PROPS, ON_STATEV, ON_ARGUMENT
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_INPUT, &
+      ON_ARGUMENT
    use mud_tensor, only: is_finite
    use mud_to_host, only: put, put_real
    use mud_units, only: bounds_for, convert_props

@@ -6,7 +6,7 @@ module mud_host_increment
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_SATURATION, S_SUCTION
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_OPTION, MUD_BAD_STATE, ON_ARGUMENT, ON_STATEV
+   use mud_status, only: fail, MUD_OK, MUD_BAD_OPTION, MUD_BAD_STATE, ON_ARGUMENT, ON_STATEV
    use mud_tensor, only: is_finite
    use mud_total, only: effective_stress, total_stress, total_blocks
    use mud_trace, only: trace_t

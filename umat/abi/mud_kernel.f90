@@ -12,10 +12,9 @@ module mud_kernel
    use mud_start, only: initial_state
    use mud_rates, only: stress_ratio
    use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
-      S_SUCTION, S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, &
-      S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
+      S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
    use mud_scanning, only: check_curves, check_saturation
-   use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size, E_LOWER, E_UPPER
+   use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
    use mud_tensor, only: is_finite, all_finite, norm, rotate

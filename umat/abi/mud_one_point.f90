@@ -9,7 +9,7 @@ module mud_one_point
    use mud_messages, only: report_text
    use mud_prepared, only: prepared_t, find_prepared
    use mud_refusals, only: place_t, remark_on_begun, remark_on_void_ratio
-   use mud_registry, only: NSTATV_WITHOUT_HYSTERESIS, S_SATURATION
+   use mud_registry, only: S_SATURATION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
       ON_STATEV

@@ -4,7 +4,7 @@
 !> stress. Texts are Pascal's: a byte with the length, then the letters, into 256 bytes of the host. An increment cannot
 !> be cut by such a host, so a hard one is taken in pieces.
 module mud_udsm
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_associated, c_f_pointer, c_loc
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_associated, c_f_pointer
    use mud_arguments, only: has_past
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_init, failed_report
    use mud_kinds, only: wp

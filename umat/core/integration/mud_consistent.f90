@@ -17,13 +17,13 @@ module mud_consistent
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows, MODE_ORDINARY
-   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
+   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, MAX_INTERRUPTED
    use mud_relaxation, only: relax
    use mud_reversal, only: interrupted_share
    use mud_sensitivity, only: changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: IDENTITY, trace, deviator, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
+   use mud_tensor, only: IDENTITY, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, change_of_left, &
       add_changes_of_faded
    use mud_trial, only: trial_t

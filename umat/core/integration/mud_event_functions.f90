@@ -14,7 +14,7 @@ module mud_event_functions
    use mud_rates, only: stress_ratio
    use mud_return_point, only: place_t, place_at, projection_on_chord, beyond_target
    use mud_state, only: counters_t
-   use mud_tensor, only: ddot, norm, deviator
+   use mud_tensor, only: norm, deviator
    use mud_trial, only: trial_t
    implicit none (type, external)
    private

@@ -5,7 +5,7 @@
 module mud_event_table
    use mud_cutoff, only: MODE_HELD
    use mud_kinds, only: wp
-   use mud_rates, only: MODE_ORDINARY, MODE_ELASTIC
+   use mud_rates, only: MODE_ORDINARY
    implicit none (type, external)
    private
    public :: event_t, EVENTS, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND

@@ -10,7 +10,7 @@ module mud_order
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: SCHEME_AUTOMATIC
    use mud_fluidity, only: growth
-   use mud_relaxation, only: relaxation_t, relaxation_speed, new_relaxation
+   use mud_relaxation, only: relaxation_speed, new_relaxation
    use mud_sensitivity, only: changes_of_rate
    use mud_substep, only: SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, step_factor
    use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS

@@ -14,7 +14,6 @@ module mud_substepping
    use mud_order, only: choose_stepping, choose_order, next_size, LAST_SLIVER
    use mud_params, only: params_t
    use mud_registry, only: SCHEME_AUTOMATIC
-   use mud_state, only: state_t
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
    use mud_rates, only: MODE_ORDINARY

@@ -6,7 +6,7 @@
 !> mud_direction_equation; here its roots are looked for.
 module mud_direction
    use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
-   use mud_branchless, only: positive, smaller
+   use mud_branchless, only: smaller
    use mud_critical_state, only: lode_factor, lode_slope
    use mud_direction_equation, only: equation_t, equation_of, find_moduli, slopes_t, slopes_at
    use mud_flow, only: dilatancy_factor

@@ -12,7 +12,7 @@ module mud_sensitivity
    use mud_params, only: params_t
    use mud_linearise, only: linearised_t, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, NRATES
    use mud_rate, only: rate_t
-   use mud_tensor, only: LANES, tensors_t, ddot, contractions, contracted, traces, ZERO_TENSORS
+   use mud_tensor, only: LANES, tensors_t, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: loading_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
    use mud_fluidity, only: growth, growth_slopes
