@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What the process asks of its libraries: the fronts of a factorisation are too small to be worth threads of the BLAS,
-!> and memory that every factorisation needs anew is kept. Both settings are
-!> optional: a BLAS or C library without them runs unchanged.
+!> Settings of the libraries of the process: the fronts of a factorisation are too small to be worth threads of the
+!> BLAS, and memory that every factorisation needs anew is kept. Both settings are optional: a BLAS or C library without
+!> them runs unchanged.
 module process_settings
    use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_null_ptr, c_null_char, c_associated, c_f_procpointer
    use dynamic_loader, only: dlsym
@@ -9,7 +9,8 @@ module process_settings
    private
    public :: apply_process_settings
 
-   integer(c_int), parameter :: TRIM_THRESHOLD = -1, MMAP_THRESHOLD = -3   !< Of mallopt (malloc.h of glibc).
+   !> Numbers of settings of mallopt (malloc.h of glibc).
+   integer(c_int), parameter :: TRIM_THRESHOLD = -1, MMAP_THRESHOLD = -3
    integer(c_int), parameter :: KEPT = 2**30, LARGEST = 2**25              !< [bytes] The largest glibc takes: 32 MiB.
 
    abstract interface

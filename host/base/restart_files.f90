@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What the files have in common from which a run goes on: who wrote them, and which are refused.
+!> Files from which a run goes on: who wrote them, and which are refused.
 module restart_files
    use faults, only: fault_t, raise, EXIT_RESTART
    use hdf5_file, only: h5_t, open_file, close_file, put_text, get_text
@@ -10,9 +10,9 @@ module restart_files
 
    !> A kind of file, and what is said of others.
    type :: restart_kind_t
-      character(24) :: kind      !< As it stands in the file.
+      character(24) :: kind      !< Kind as it stands in the file.
       character(4) :: format     !< Grows with every change of what is stored.
-      character(50) :: name      !< What a user should name.
+      character(50) :: name      !< Noun for the file that a user should name.
       character(160) :: other    !< Behind the path of a file of another kind.
       character(60) :: remedy    !< For a file of another version.
    end type restart_kind_t

@@ -45,7 +45,7 @@ module mud_kernel
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type report_t
 
-   !> What a successful update returns, UMAT conventions.
+   !> Results of a successful update, UMAT conventions.
    type :: output_t
       real(wp) :: stress(6), statev(NSTATV)
       integer :: n_statev   !< So many of statev are set.
@@ -73,8 +73,8 @@ contains
       end if
    end subroutine kernel_init
 
-   !> The same for checked parameters. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV; MUD_BAD_STATE
-   !> for a saturation without hysteresis; otherwise the codes of initialise.
+   !> Initialises a point of checked parameters. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV;
+   !> MUD_BAD_STATE for a saturation without hysteresis; otherwise the codes of initialise.
    pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report, saturation)
       type(params_t), intent(in) :: par
       real(wp), intent(inout) :: stress(6)
@@ -97,7 +97,8 @@ contains
       statev(1:statev_size(par%options_t)) = packed(1:statev_size(par%options_t))
    end subroutine kernel_begin
 
-   !> Without hysteresis S_w is a function of suction and void ratio: another one of a start would be lost in silence.
+   !> Refuses a degree of saturation of the start without hysteresis: S_w is a function of suction and void ratio there,
+   !> and another one would be lost in silence.
    pure subroutine refuse_preset(preset, status)
       real(wp), intent(in) :: preset
       type(mud_status_t), intent(inout) :: status
@@ -237,9 +238,10 @@ contains
       end if
    end subroutine read_state
 
-   !> What pack_state does not write: totals of the counters, and numbers of options that are off.
+   !> Copies the entries of STATEV that pack_state does not write: totals of the counters, and numbers of options that
+   !> are off.
    pure subroutine keep_totals(n, from, to)
-      integer, intent(in) :: n   !< As of statev_size.
+      integer, intent(in) :: n   !< Number of entries of STATEV, as of statev_size.
       real(wp), intent(in), contiguous :: from(:)
       real(wp), intent(inout), contiguous :: to(:)
 
@@ -295,7 +297,7 @@ contains
                                            SQRT_3_2*largest)
    end subroutine check_strength
 
-   !> From the core's results to UMAT conventions; a result that is not finite is a failure.
+   !> Writes the core's results in UMAT conventions; a result that is not finite is a failure.
    pure subroutine write_output(options, state, blocks, counters, has_tangent, output, status)
       type(options_t), intent(in) :: options
       type(state_t), intent(in) :: state

@@ -20,11 +20,11 @@ module mud_udsm
    private
    public :: user_mod, model_count, model_name, param_count, param_name, param_unit, state_count, state_name, state_unit
 
-   integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Of the host's components; its own inverse.
+   integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Order of the host's components; its own inverse.
    integer, parameter :: ELASTIC = 1                     !< Tangent kind.
    integer, parameter :: BEGIN_STATE = 1, STRESSES = 2, STIFFNESS = 3, HOW_MANY = 4, ATTRIBUTES = 5, &
                          ELASTIC_STIFFNESS = 6
-   integer(c_int), parameter :: TENSION_POINT = 2, HARDENING_POINT = 5   !< What IPL says.
+   integer(c_int), parameter :: TENSION_POINT = 2, HARDENING_POINT = 5   !< Values of IPL.
    !> Poisson's ratio by which undrained soil is given water [-]; 0.5 would be singular.
    real(wp), parameter :: UNDRAINED = 0.495_wp
    !> A mean stress below this share of an atmosphere is no initial stress: it comes later [-].

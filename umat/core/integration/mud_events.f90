@@ -35,7 +35,7 @@ contains
    !> docs/theory/integration.md sections 4.1, 4.2.
    pure subroutine stop_at_event(par, error, h, it)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: error        !< of the substep [-]
+      real(wp), intent(in) :: error        !< error of the substep [-]
       real(wp), intent(inout) :: h
       type(integration_t), intent(inout) :: it
       integer :: i
