@@ -57,8 +57,8 @@ contains
       end do
    end subroutine add_dashpots
 
-   !> What the forces take out of a step, by the mean of the velocities at its ends, at given displacements [kJ].
-   !> docs/theory/host.md section 9. Those that act; their outflow does no work.
+   !> Work that the acting dashpots take out of a step, by the mean of the velocities at its ends, at given
+   !> displacements [kJ]. docs/theory/host.md section 9. Their outflow does no work.
    pure real(wp) function work_of_dashpots(list, dofs, old, new, change) result(work)
       type(dashpots_t), intent(in) :: list(:)   !< (absorbing boundaries)
       type(dofs_t), intent(in) :: dofs

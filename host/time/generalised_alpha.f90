@@ -18,7 +18,7 @@ module generalised_alpha
       integer :: kind = STATIC
       real(wp) :: dt = 1.0_wp
       real(wp) :: beta = 0.25_wp, gamma = 0.5_wp   !< Newmark's, for displacements of dynamic steps.
-      real(wp) :: gamma_1 = 1.0_wp                 !< Of first-order rates.
+      real(wp) :: gamma_1 = 1.0_wp                 !< Weight of the new rate, for first-order rates.
       real(wp) :: l_f = 1.0_wp                     !< Level of values.
       real(wp) :: l_v = 1.0_wp                     !< Level of displacement rates.
       real(wp) :: l_a = 1.0_wp                     !< Level of accelerations.
@@ -66,7 +66,7 @@ contains
       logical, intent(in) :: no_predictor
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :)   !< (FIELDS, nodes) [m, kPa], rates [1/s of it], (2, nodes)
                                                              !< [m/s2].
-      real(wp), intent(out) :: x1(:, :)   !< As x0.
+      real(wp), intent(out) :: x1(:, :)   !< Predicted values, in the shape of x0.
 
       x1 = x0
       if (no_predictor .or. scheme%kind == STATIC) return
