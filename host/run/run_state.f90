@@ -9,19 +9,18 @@ module run_state
    use control_state, only: control_state_t, new_control_state, exchange_control
    use energy_ledger, only: ledger_t, exchange_ledger
    use initial_conditions, only: tension_t
-   use model_types, only: model_t, gravity_at
+   use model_types, only: model_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
    use pressure_alarm, only: lines_t
    use solution, only: solution_t, stage_state_t
    use sparsity_pattern, only: make_pattern
-   use term, only: term_box_t
    use water_balance, only: water_t
    implicit none (type, external)
    private
    public :: run_t, exchange_run
 
    type, extends(solution_t) :: run_t
-      type(term_box_t), allocatable :: terms(:)   !< Those that the scene has, in the order of their registry.
+      type(term_box_t), allocatable :: terms(:)   !< Those of the model, with what they keep from step to step.
       type(drainage_t) :: drainage
       type(ledger_t) :: ledger
       !> (4, points) Stress of the damping in proportion to the stiffness, for the ledger; where a region has it [kPa].
@@ -44,6 +43,7 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(archive_t), intent(inout) :: archive
+      integer :: i
 
       call exchange_stage_state(size(model%stages), run%at, archive)
       call archive%exchange('steps', run%steps, '-', 'steps', least=0)
@@ -54,8 +54,9 @@ contains
       call archive%exchange('largest', run%system%largest, 'kN', 'largest scale of every field')
       if (allocated(run%damping_stress)) call archive%exchange('damping_stress', run%damping_stress, 'kPa', &
          'stress of the damping in proportion to the stiffness')
-      if (allocated(run%constraint%dashpots)) call archive%exchange('offset', run%constraint%offset, 'kN, m3/s', &
-         'flow that is subtracted, forces that hold the ground')
+      do i = 1, size(run%terms)
+         call run%terms(i)%term%exchange(run%solution_t, archive)
+      end do
       if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
                                                            size(model%contacts))
       call exchange_control(run%control, archive)

@@ -8,13 +8,12 @@ module step_failure
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
    use free_bodies, only: bodies_on_contact
-   use model_types, only: model_t
+   use model_types, only: model_t, term_box_t
    use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use run_state, only: run_t
    use unknown_fields, only: FIELD_NAMES
    use scene_types, only: stage_t
-   use term, only: term_box_t
    implicit none (type, external)
    private
    public :: explain_failure, explain_short_step, LEAST_OF_STAGE

@@ -15,7 +15,7 @@ module scene_types
    implicit none (type, external)
    private
    public :: scene_t, scene_item_t, scene_mesh_t, scene_law_t, scene_region_t
-   public :: initial_t, amplitude_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t
+   public :: initial_t, amplitude_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, tie_t, point_t
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, item_of, place_of, groups_named, amplitude_at
    public :: WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, PRESCRIBED_TURN
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
@@ -65,7 +65,6 @@ module scene_types
       real(wp) :: rho_s = 2.65_wp, void_ratio = -1.0_wp, damping = 0.0_wp, stiffness_damping = 0.0_wp
       integer :: drainage = COUPLED
       logical :: rest = .false.         !< Without a group: the elements that no other region has.
-      character(LENGTH), allocatable :: stages(:)   !< In which it is part of the ground.
    end type scene_region_t
 
    type, extends(scene_item_t) :: initial_t
@@ -159,14 +158,6 @@ module scene_types
       character(LENGTH), allocatable :: stages(:)
    end type contact_pair_t
 
-   !> A boundary through which waves leave, and may come in.
-   type, extends(scene_item_t) :: absorber_t
-      character(LENGTH) :: group_name = '', amplitude_name = ''
-      integer :: group = 0, amplitude = 0
-      real(wp) :: rho = 0.0_wp, c_p = 0.0_wp, c_s = 0.0_wp, incoming(2) = 0.0_wp
-      character(LENGTH), allocatable :: stages(:)
-   end type absorber_t
-
    !> Two boundaries whose nodes at equal heights move as one.
    type, extends(scene_item_t) :: tie_t
       character(LENGTH) :: first_name = '', second_name = ''
@@ -213,7 +204,6 @@ module scene_types
       type(load_t), allocatable :: loads(:)
       type(plate_t), allocatable :: plates(:)
       type(contact_pair_t), allocatable :: contacts(:)
-      type(absorber_t), allocatable :: absorbers(:)
       type(tie_t), allocatable :: ties(:)
       type(point_t), allocatable :: points(:)
    end type scene_t

@@ -24,7 +24,7 @@ module prescribed_values
       real(wp), allocatable :: rain_0(:), rain_1(:)   !< Rain in the loads below, before and after [m3/s].
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
-      type(dashpots_t), allocatable :: dashpots(:)   !< Dashpots of absorbing boundaries.
+      type(dashpots_t), allocatable :: dashpots(:)   !< Dashpots of terms.
       real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
       real(wp), allocatable :: mass(:)        !< Masses of rigid bodies [Mg].
       integer, allocatable :: bodies(:, :)    !< (3, bodies that turn) Their unknowns.

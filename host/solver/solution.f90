@@ -20,11 +20,10 @@ module solution
       real(wp) :: nominal = 0.0_wp             !< Step without cuts [s].
       real(wp) :: factor = 1.0_wp              !< Share of it after cuts.
       real(wp), allocatable :: x_start(:, :)   !< Unknowns at its start, which some boundaries hold.
-      ! Where parts of the ground join or leave, else not allocated.
-      real(wp), allocatable :: held_up(:)      !< (unknowns) Forces at the start of what leaves with this stage [kN].
-      logical, allocatable :: absent(:)        !< (unknowns) No present element has them.
       !> (unknowns) What acted at once at the start and is applied evenly over the stage; not allocated: nothing [kN].
       real(wp), allocatable :: sudden(:)
+   contains
+      procedure :: share_of
    end type stage_state_t
 
    type :: solution_t
@@ -35,4 +34,12 @@ module solution
       type(state_t) :: state, next             !< Before and after the step under way.
       type(stage_state_t) :: at
    end type solution_t
+contains
+   !> Share of the stage that is over at a time. [-]
+   pure real(wp) function share_of(self, duration, time) result(share)
+      class(stage_state_t), intent(in) :: self
+      real(wp), intent(in) :: duration, time   !< Of the stage [s].
+
+      share = min(1.0_wp, max(0.0_wp, (time - self%t_start)/duration))
+   end function share_of
 end module solution

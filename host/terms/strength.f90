@@ -6,13 +6,12 @@ module strength
    use key_schema, only: REQUIRED
    use key_table, only: key_table_t
    use material_point, only: material_t
-   use model_types, only: model_t, factor_at
+   use model_types, only: model_t, term_t, factor_at
    use name_search, only: defined_name
    use namelists, only: group_t, LENGTH
    use porous_domain, only: state_t
    use scene_types, only: scene_item_t, item_of, place_of, groups_named
    use solution, only: solution_t
-   use term, only: term_t
    use texts, only: short
    implicit none (type, external)
    private
@@ -68,7 +67,7 @@ contains
    !> factor that is not 1 at the start, a value that the law refuses.
    subroutine build(self, model, there, fault)
       class(strength_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
+      type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)

@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> The terms of the program. A new term is one new file and one line in `list_terms`.
 module term_registry
+   use absorbing, only: absorbing_t
    use faults, only: fault_t
    use key_table, only: key_table_t
-   use model_types, only: model_t
+   use model_types, only: model_t, term_t, term_box_t
+   use staging, only: staging_t
    use strength, only: strength_t
-   use term, only: term_t, term_box_t
    implicit none (type, external)
    private
    public :: own_groups, declare_keys, build_terms
@@ -18,6 +19,8 @@ contains
 
       allocate (list(0))
       call add(strength_t())
+      call add(staging_t())
+      call add(absorbing_t())
    contains
       subroutine add(one)
          class(term_t), intent(in) :: one
@@ -53,21 +56,19 @@ contains
       end do
    end subroutine declare_keys
 
-   !> The terms that the scene of a model asks for. Faults: theirs.
-   subroutine build_terms(model, terms, fault)
-      type(model_t), intent(in) :: model
-      type(term_box_t), allocatable, intent(out) :: terms(:)
+   !> Gives a model the terms that its scene asks for. Faults: theirs.
+   subroutine build_terms(model, fault)
+      type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       type(term_box_t), allocatable :: list(:)
       logical, allocatable :: there(:)
       integer :: i
 
       call list_terms(list)
-      allocate (there(size(list)))
+      allocate (there(size(list)), source=.false.)
       do i = 1, size(list)
-         call list(i)%term%build(model, there(i), fault)
-         if (fault%code /= 0) return
+         if (fault%code == 0) call list(i)%term%build(model, there(i), fault)
       end do
-      terms = pack(list, there)
+      model%terms = pack(list, there)
    end subroutine build_terms
 end module term_registry

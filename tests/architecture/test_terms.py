@@ -9,6 +9,8 @@ MOST = 3   # the registry of the terms, the words of the key `without` and what 
 FRAME = {"term", "term_registry"}
 # What a file says that knows a term. The names of keys in another group, as those of an old message, count as well.
 WORDS = {
+    "absorbing": r"absorb",
+    "staging": r"stag(ed|ing)_ground|\bstaging|held_up|\babsent\(",
     "strength": r"strength",
 }
 STEP = ("run/step_attempt", "run/time_stepping", "run/step_booking", "solver/newton_step")   # They know term_t alone.
