@@ -12,7 +12,7 @@ module process_settings
    private
    public :: apply_process_settings
 
-   integer(c_int), parameter :: TRIM_THRESHOLD = -1, MMAP_THRESHOLD = -3   !< Of mallopt (malloc.h of glibc).
+   integer(c_int), parameter :: TRIM_THRESHOLD = -1, MMAP_THRESHOLD = -3   !< Numbers of mallopt (malloc.h of glibc).
    integer(c_int), parameter :: KEPT = 2**30, LARGEST = 2**25              !< [bytes] The largest glibc takes: 32 MiB.
 
    abstract interface
