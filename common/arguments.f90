@@ -13,7 +13,7 @@ module arguments
    !> An option, and what the command line says about it.
    type :: option_t
       character(20) :: name             !< With its dashes.
-      character(40) :: takes = ''       !< What its value is, for a message, as 'a folder'; blank: it takes none.
+      character(40) :: takes = ''       !< Noun for its value in a message, as 'a folder'; blank: it takes none.
       character(2) :: letter = ''       !< Short form.
       logical :: answers = .false.      !< Only asks for a text, as --help: what follows is not read.
       logical :: given = .false.
@@ -49,8 +49,8 @@ contains
    subroutine parse_words(words, options, subject, hint, operand, fault, second)
       character(*), intent(in) :: words(:)
       type(option_t), intent(inout) :: options(:)
-      character(*), intent(in) :: subject    !< What the operand is, as 'case'.
-      character(*), intent(in) :: hint       !< How to go on after a mistake, as 'see mud_triax --help'.
+      character(*), intent(in) :: subject    !< Noun for the operand, as 'case'.
+      character(*), intent(in) :: hint       !< Advice after a mistake, as 'see mud_triax --help'.
       character(*), intent(out) :: operand
       type(fault_t), intent(inout) :: fault
       character(*), intent(out), optional :: second   !< Blank if there is none.

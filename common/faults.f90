@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What went wrong: an exit code and a sentence that says what, where, the value, the allowed range and the remedy.
+!> Faults: an exit code and a sentence that says what is wrong, where, the value, the allowed range and the remedy.
 module faults
    implicit none (type, external)
    private

@@ -7,7 +7,7 @@ module interrupts
    private
    public :: catch_interrupts, interrupted, EXIT_INTERRUPTED
 
-   integer, parameter :: EXIT_INTERRUPTED = 130         !< As a shell tells it of SIGINT: 128 + 2.
+   integer, parameter :: EXIT_INTERRUPTED = 130   !< Exit code of a run that SIGINT ends, as a shell tells it: 128 + 2.
    integer(c_int), parameter :: SIGINT = 2, SIGTERM = 15   !< POSIX
    logical, volatile :: seen = .false.
 
@@ -19,7 +19,7 @@ module interrupts
       end function signal
    end interface
 contains
-   !> From here on, for the whole process.
+   !> Catches interrupts from here on, for the whole process.
    subroutine catch_interrupts()
       type(c_funptr) :: before
 

@@ -23,14 +23,14 @@ module key_schema
       character(12) :: group
       character(24) :: name
       character :: kind                  !< n number, i integer, t text, w one of the words; capital: a list of them
-      character(14) :: preset            !< Its default, or REQUIRED or NONE.
+      character(14) :: preset            !< Default of the key, or REQUIRED or NONE.
       real(wp) :: lower, upper           !< Range of a number.
       character(120) :: meaning
       character(240) :: words = ''       !< Kinds w, W: the words, divided by |.
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
-      integer :: values = 0              !< How many values a list has, 0: any number.
-      !> When it has an effect, conditions between blanks: `key=word|word` another key has one of these words or none,
-      !> `+key` another key is given, `-key` it is not, `:p_w` the unknown exists.
+      integer :: values = 0              !< Number of values of a list, 0: any number.
+      !> Conditions of its effect, between blanks: `key=word|word` another key has one of these words or none, `+key`
+      !> another key is given, `-key` it is not, `:p_w` the unknown exists.
       character(48) :: acts = ''
       character(16) :: refers = ''       !< Kind t: the group whose name it gives; 'material' stands for all laws.
    end type key_t

@@ -13,7 +13,7 @@ module key_table
    public :: key_table_t
 
    type :: key_table_t
-      type(group_t) :: group                  !< It is read; one without entries gives nothing.
+      type(group_t) :: group                  !< Group that is read; one without entries gives nothing.
       type(key_t), allocatable :: keys(:)     !< Listed so far; not allocated: keys are not listed.
    contains
       procedure :: given, number, whole, word, flag, text, numbers, wholes, texts

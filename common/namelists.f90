@@ -20,7 +20,7 @@ module namelists
 
    !> `key = values`.
    type :: entry_t
-      character(LENGTH) :: key = ''        !< As written.
+      character(LENGTH) :: key = ''        !< Key as written.
       integer :: line = 0
       integer :: count = 0                 !< Number of values.
       character(LENGTH), allocatable :: values(:)
@@ -66,7 +66,7 @@ contains
    !> groups has those before it. groups(:) may be empty.
    subroutine groups_of_text(text, file, groups, fault)
       character(*), intent(in) :: text
-      character(*), intent(in) :: file   !< What errors call it; its folder is where relative paths begin.
+      character(*), intent(in) :: file   !< File named in errors; its folder is where relative paths begin.
       type(group_t), allocatable, intent(out) :: groups(:)
       type(fault_t), intent(inout) :: fault
       type(word_t) :: pending
@@ -145,7 +145,8 @@ contains
       end do
    end subroutine read_line
 
-   !> Where the text that is quoted from `first` on ends; beyond the line if it does not. Two quotes do not end it.
+   !> Place where the text that is quoted from `first` on ends; beyond the line if it does not. Two quotes do not end
+   !> it.
    pure integer function closing_quote(text, first) result(last)
       character(*), intent(in) :: text
       integer, intent(in) :: first
@@ -342,7 +343,7 @@ contains
       call set_values(group, key, values)
    end subroutine set_entry
 
-   !> The same with a list of values.
+   !> Sets a key of a group to a list of values, in place of its value.
    pure subroutine set_values(group, key, values)
       type(group_t), intent(inout) :: group
       character(*), intent(in) :: key

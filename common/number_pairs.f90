@@ -17,7 +17,7 @@ contains
       character(*), intent(in) :: named       !< Path as it is written.
       character(*), intent(in) :: from_file   !< File that names it, and where.
       integer, intent(in) :: from_line
-      character(*), intent(in) :: meaning     !< Of the two numbers, as "a time and a factor".
+      character(*), intent(in) :: meaning     !< Meaning of the two numbers, as "a time and a factor".
       real(wp), allocatable, intent(out) :: first(:), second(:)
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: path

@@ -36,7 +36,7 @@ contains
       if (index(text, MARK) == 1) mark_length = len(MARK)
    end function mark_length
 
-   !> Where a text first has a word that no letter, digit or underscore continues, 0 if nowhere; case ignored.
+   !> First place in a text of a word that no letter, digit or underscore continues, 0 if there is none; case ignored.
    pure integer function word_place(text, word)
       character(*), intent(in) :: text, word
       character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyz0123456789_'

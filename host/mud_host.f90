@@ -8,7 +8,7 @@ program mud_host
    use contact_setup, only: contacts_act
    use initial_conditions, only: balance_t
    use wall_clock, only: clock
-   use warnings, only: print_warning
+   use warnings, only: print_warning, WARNING_LENGTH
    use generalised_alpha, only: STATIC, DYNAMIC
    use model_builder, only: build_model
    use model_types, only: model_t
@@ -24,7 +24,6 @@ program mud_host
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
    use scene_warnings, only: list_warnings
-   use idle_keys, only: WARNING_LENGTH
    use time_stepping, only: run_stages
    use files, only: limits_are_errors, folder_of
    use interrupts, only: catch_interrupts

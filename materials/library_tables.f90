@@ -144,8 +144,8 @@ contains
       end if
    end subroutine property_range
 
-   !> The same in the unit of stress that the p_atm of given PROPS tells. props(:) has as many entries as the library
-   !> takes; where it refuses them, those of property_range.
+   !> Bounds and preset of an entry of PROPS in the unit of stress that the p_atm of given PROPS tells. props(:) has as
+   !> many entries as the library takes; where it refuses them, those of property_range.
    subroutine range_for(props, place, lower, upper, preset)
       real(wp), intent(in) :: props(:)
       integer, intent(in) :: place

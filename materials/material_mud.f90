@@ -23,24 +23,24 @@ module material_mud
 
    integer, parameter :: BUFFER = 1000
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< A default said in another unit is rounded.
-   character(*), parameter :: STRENGTH = 'M_c'   !< What may change during a run.
+   character(*), parameter :: STRENGTH = 'M_c'   !< Parameter that may change during a run.
    character(*), parameter :: GUARDS(10) = [character(NAME_LENGTH) :: 'floor', 'contraction cap', 'softening cap', &
       'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile', &
       'turning points forgotten']
 
-   !> Beside every parameter of the library.
+   !> Keys of &mud beside every parameter of the library.
    type(key_t), parameter :: MUD_KEYS(*) = [ &
       key_t('mud', 'file', 't', NONE, 0, 0, 'material file; every parameter of the library is a key too')]
 
    type, extends(material_t) :: mud_t
-      real(wp), allocatable :: props(:)      !< As the registry of the library has them.
-      real(wp), allocatable :: prepared(:)   !< The same, checked: the library's own.
-      integer(c_int) :: given_tangent = 0               !< Of PROPS; 0: none.
+      real(wp), allocatable :: props(:)      !< PROPS as the registry of the library has them.
+      real(wp), allocatable :: prepared(:)   !< PROPS, checked, in the library's own form.
+      integer(c_int) :: given_tangent = 0               !< Kind of tangent in PROPS; 0: none.
       integer(c_int) :: tangent = MUD_TANGENT_ELASTIC   !< Kind that updates return where one is asked for.
       integer :: place_e = 0, place_s_w = 0   !< In the state.
       real(wp) :: e_0 = 0.0_wp                !< Void ratio of PROPS [-].
       real(wp) :: fade = 1.0_wp               !< Stress ratios at the start of an update are multiplied by it [-].
-      logical, allocatable :: is_ratio(:)     !< Which state variables are such. (n_state)
+      logical, allocatable :: is_ratio(:)     !< Whether a state variable is a stress ratio. (n_state)
    contains
       procedure :: initial_state
       procedure :: update
@@ -173,8 +173,8 @@ contains
       if (place == 0) text = 'of &mud '//STRENGTH//' may change, which every strength of the model is in proportion to'
    end subroutine find_varying
 
-   !> Where the strength falls, stress ratios keep their shares of it: the state before an update is faded.
-   !> docs/theory/host.md section 15.
+   !> Sets the strength over a step. Where it falls, stress ratios keep their shares of it: the state before an update
+   !> is faded. docs/theory/host.md section 15.
    subroutine change_over_step(self, places, before, after, text)
       class(mud_t), intent(inout) :: self
       integer, intent(in) :: places(:)
@@ -194,7 +194,7 @@ contains
    pure subroutine faded(self, stress, state, stress_, state_)
       class(mud_t), intent(in) :: self
       real(wp), intent(in) :: stress(6), state(:)
-      real(wp), intent(out) :: stress_(6), state_(:)   !< As stress, state.
+      real(wp), intent(out) :: stress_(6), state_(:)   !< Stress and state with their stress ratios faded.
       real(wp) :: mean
 
       mean = sum(stress(1:3))/3
@@ -341,7 +341,8 @@ contains
       saturation = state(self%place_s_w)
    end function saturation
 
-   !> By the library's own curve; for an invalid void ratio the result is full saturation and has no meaning.
+   !> Degree of saturation by the library's own curve; for an invalid void ratio the result is full saturation and has
+   !> no meaning.
    function retention(self, p_c, e) result(sat)
       class(mud_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e

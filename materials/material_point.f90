@@ -14,20 +14,20 @@ module material_point
    public :: lost_pressure, PRESSURE_LOST, range_t, untested
    public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
 
-   integer, parameter :: MOST_POINTS = 12   !< Of a batch: the quadrature points of an element.
+   integer, parameter :: MOST_POINTS = 12   !< Most points of a batch: the quadrature points of an element.
    integer, parameter :: MOST_GUARDS = 16   !< Counters of a law beside the three that every law has.
    integer, parameter :: NAME_LENGTH = 24
    integer, parameter :: DOUBT_LENGTH = 500
    logical, parameter :: WITH_TANGENT = .true.
-   !> Where a law's degree of saturation has no history.
+   !> Refusal of a degree of saturation at the start by a law in which it has no history.
    character(*), parameter :: NO_PRESET = 'the degree of saturation of this material follows from the suction: '// &
       'leave saturation out of &initial, or give the material hysteresis = 1 (&mud)'
 
-   !> What a user is told of a point without mean effective stress. The library says it to hosts of umat_.
+   !> Sentence on a point without mean effective stress. The library says it to hosts of umat_.
    character(*), parameter :: PRESSURE_LOST = 'the model has no meaning below 0, and its tension cut-off is off. '// &
       'Do not use the results from here on; set cutoff = 1.'
 
-   !> What a batch of updates did.
+   !> Report of a batch of updates.
    type :: report_t
       integer :: code = 0         !< 0: done; negative: the caller's mistake; positive: a hard increment.
       integer :: point = 0        !< The point that failed; those behind it were not updated.
@@ -35,8 +35,9 @@ module material_point
       integer :: n_rate = 0       !< Rate evaluations, of all points.
       integer :: n_substep = 0    !< Accepted substeps.
       integer :: n_reject = 0     !< Rejected substeps.
-      integer :: guards(MOST_GUARDS) = 0   !< How often each of the law's guards acted; names in the law.
-      integer :: subject = 0, entry = 0    !< What a failure is about, by the law's own count.
+      integer :: guards(MOST_GUARDS) = 0   !< Number of times that each guard of the law acted; their names are in the
+                                           !< law.
+      integer :: subject = 0, entry = 0    !< Subject of a failure, by the law's own count.
       real(wp) :: value = 0.0_wp, lower = 0.0_wp, upper = 0.0_wp   !< Offending value and its allowed range.
       real(wp) :: reached = 1.0_wp         !< Share of the increment that was integrated.
    end type report_t
@@ -67,19 +68,20 @@ module material_point
    type, abstract :: material_t
       integer :: n_state = 0                !< State variables a point.
       logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
-      logical :: has_retention = .false.    !< It knows its saturation itself; no curve beside it.
-      logical :: saturation_is_state = .false.   !< It has a history: retention() is where it starts, no more.
+      logical :: has_retention = .false.    !< The law computes its saturation itself, without a curve beside it.
+      logical :: saturation_is_state = .false.   !< The saturation has a history: retention() is where it starts, no
+                                                 !< more.
       logical :: unguarded = .false.        !< Made for a mean effective stress above 0, and nothing keeps it there.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
-      real(wp) :: tolerance = 0.0_wp        !< Of the stress integration, relative; 0: the law has none.
+      real(wp) :: tolerance = 0.0_wp        !< Tolerance of the stress integration, relative; 0: the law has none.
       logical :: given_tolerance = .false., given_scheme = .false.   !< Not the defaults: set by hand.
       character(NAME_LENGTH) :: guard_names(MOST_GUARDS) = ''
       character(NAME_LENGTH), allocatable :: state_names(:)
-      character(DOUBT_LENGTH) :: doubt = ''      !< Of its parameters, allowed and most often a mistake: a sentence.
-      type(stress_unit_t) :: unit                !< Of its stresses; kPa in the comments of this module.
+      character(DOUBT_LENGTH) :: doubt = ''      !< Sentence on parameters that are allowed and most often a mistake.
+      type(stress_unit_t) :: unit                !< Unit of its stresses; kPa in the comments of this module.
       type(range_t) :: tested_e, tested_p        !< Void ratios, stresses [kPa] of the tests behind it; without: any.
-      class(retention_t), allocatable :: curve   !< Of a law that has no retention of its own; without: saturated.
+      class(retention_t), allocatable :: curve   !< Curve of a law that has no retention of its own; without: saturated.
    contains
       procedure(initial_state_i), deferred :: initial_state
       procedure(update_i), deferred :: update
@@ -129,7 +131,7 @@ module material_point
          real(wp), intent(in), contiguous :: d_suction(:)        !< (n) increments [kPa]
          logical, intent(in) :: with_tangent
          type(response_t), intent(inout) :: response
-         real(wp), intent(inout), contiguous :: new_state(:, :)  !< As state.
+         real(wp), intent(inout), contiguous :: new_state(:, :)  !< State at the end, as state.
          type(report_t), intent(out) :: report
       end subroutine update_i
 
@@ -155,10 +157,10 @@ module material_point
       end function of_state_i
    end interface
 contains
-   !> What of void ratios and mean effective stresses is outside the tests behind a law; blank: nothing.
+   !> Sentence on the void ratios and mean effective stresses that are outside the tests behind a law; blank: none is.
    pure function untested(law, e, p) result(text)
       class(material_t), intent(in) :: law
-      type(range_t), intent(in) :: e, p   !< That it is used at [-, kPa].
+      type(range_t), intent(in) :: e, p   !< Ranges in which the law is used [-, kPa].
       character(:), allocatable :: text
 
       text = ''
@@ -187,7 +189,7 @@ contains
    subroutine no_tolerance(self, tolerance, scheme)
       class(material_t), intent(inout) :: self
       real(wp), intent(in) :: tolerance   !< Relative, > 0
-      integer, intent(in) :: scheme       !< As the parameter of that name.
+      integer, intent(in) :: scheme       !< Scheme, as the parameter of that name.
 
       if (self%tolerance > 0.0_wp .and. scheme >= 0) self%tolerance = tolerance
    end subroutine no_tolerance
@@ -210,7 +212,7 @@ contains
    !> what they are in it; `text` says why not, and the law is then of no use.
    subroutine cannot_change(self, places, before, after, text)
       class(material_t), intent(inout) :: self
-      integer, intent(in) :: places(:)                 !< Of find_varying, each once.
+      integer, intent(in) :: places(:)                 !< Places by find_varying, each once.
       real(wp), intent(in) :: before(:), after(:)      !< (places) [-]
       character(*), intent(out) :: text
 
@@ -265,7 +267,7 @@ contains
    subroutine cannot_save(self, path, origin, stress, state, strain, suction, d_suction, text)
       class(material_t), intent(in) :: self
       character(*), intent(in) :: path, origin   !< Name of the file, and a remark for its reader.
-      real(wp), intent(in) :: stress(6), state(:), strain(6), suction, d_suction   !< As update has them.
+      real(wp), intent(in) :: stress(6), state(:), strain(6), suction, d_suction   !< Arguments as update has them.
       character(*), intent(out) :: text
 
       associate (u1 => self, u2 => path, u3 => origin, u4 => stress, u5 => state, u6 => strain, u7 => suction, &
@@ -274,7 +276,7 @@ contains
       text = 'this law cannot write its updates to a file; only those of MUD can be run alone'
    end subroutine cannot_save
 
-   !> What a file of results says about the law beside its name.
+   !> Remarks of a law in a file of results, beside its name: none.
    subroutine no_remarks(self, list)
       class(material_t), intent(in) :: self
       type(remark_t), allocatable, intent(out) :: list(:)

@@ -19,8 +19,8 @@ module material_umat
    public :: umat_t, new_umat, UMAT_KEYS, UMAT_REFUSES, UMAT_NOT_FINITE
 
    !> Codes of a failure.
-   integer, parameter :: UMAT_REFUSES = 1      !< It set PNEWDT below 1.
-   integer, parameter :: UMAT_NOT_FINITE = 2   !< Its stress or DDSDDE is not finite.
+   integer, parameter :: UMAT_REFUSES = 1      !< The UMAT set PNEWDT below 1.
+   integer, parameter :: UMAT_NOT_FINITE = 2   !< The stress or DDSDDE of the UMAT is not finite.
    real(wp), parameter :: HALF = 0.5_wp, SMALLEST_FACTOR = 0.05_wp
 
    integer, parameter :: ABAQUS(6) = [1, 2, 3, 4, 5, 6]   !< Shear 12, 13, 23.

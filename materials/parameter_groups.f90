@@ -31,9 +31,9 @@ contains
       type(group_t), intent(in) :: group
       real(wp), allocatable, intent(out) :: props(:)
       character(*), intent(out) :: title   !< Name of the material.
-      character(*), intent(out) :: doubt   !< What the library warns of, with its place; blank: nothing.
+      character(*), intent(out) :: doubt   !< Warning of the library, with its place; blank: none.
       type(fault_t), intent(inout) :: fault
-      real(wp), intent(inout), optional :: tested(4)   !< As TESTED_KEYS; what is not given stays.
+      real(wp), intent(inout), optional :: tested(4)   !< Ranges as TESTED_KEYS; what is not given stays.
       type(group_t), allocatable :: groups(:)
       character(:), allocatable :: path
       character(len(doubt)) :: doubt_of_file
@@ -229,7 +229,7 @@ contains
    !> "from 0.001 to 10000, default 12: kinematic hardening constant, eq. (13)"
    function described_range(place, props) result(text)
       integer, intent(in) :: place
-      real(wp), intent(in) :: props(:)   !< Of which p_atm tells the unit.
+      real(wp), intent(in) :: props(:)   !< PROPS, of which p_atm tells the unit.
       character(:), allocatable :: text
       real(wp) :: lower, upper, preset
 

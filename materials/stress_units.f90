@@ -9,7 +9,7 @@ module stress_units
    !> A unit of stress.
    type :: stress_unit_t
       character(5) :: name = 'kPa'
-      real(wp) :: factor = 1.0_wp   !< How many of it make a kPa.
+      real(wp) :: factor = 1.0_wp   !< Number of this unit that makes a kPa.
    end type stress_unit_t
 
    type(stress_unit_t), parameter :: KILOPASCAL = stress_unit_t()

@@ -55,7 +55,7 @@ contains
       call c_f_procpointer(found, umat)
    end subroutine load_umat
 
-   !> What the loader says about its last failure.
+   !> Message of the loader about its last failure.
    function loader_message() result(text)
       character(:), allocatable :: text
       character(kind=c_char), pointer :: letters(:)

@@ -2,7 +2,7 @@
 !> A material as other programs read it: cards, JSON, XML and plain numbers. Every number is written with as many digits
 !> as bring back its bits.
 module describe_hosts
-   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: output_unit
    use describe_tables, only: text, number, version
    use faults, only: fault_t, raise, EXIT_INPUT
@@ -29,7 +29,7 @@ module describe_hosts
       'incrementaldriver-start', 'initialconditions.inp at an isotropic stress of -100', &
       'udsm', 'number, name, unit and value of each PLAXIS parameter', &
       'plain', 'PROPS, a number a line'], [2, 10])
-   !> Of the hosts, those that take PROPS without hysteresis, preloading and fluidity alone.
+   !> Hosts that take PROPS without hysteresis, preloading and fluidity alone.
    character(*), parameter :: WITHOUT_HYSTERESIS(4) = [character(len(HOSTS)) :: 'ogs', 'ogs-unsaturated', 'udsm', &
       'kratos-udsm']
    integer, parameter :: A_LINE = 8          !< Numbers of a card.
@@ -39,7 +39,7 @@ module describe_hosts
    type :: named_material_t
       real(wp), allocatable :: props(:)
       character(200) :: title = ''
-      character(500) :: doubt = ''   !< What the library warns of; blank: nothing.
+      character(500) :: doubt = ''   !< Warning of the library; blank: none.
       type(stress_unit_t) :: unit
    end type named_material_t
 contains
@@ -302,7 +302,7 @@ contains
       end do
    end subroutine print_cards
 
-   !> What it is, on a line.
+   !> Name and origin of a material, on a line.
    function headline(material) result(line)
       type(named_material_t), intent(in) :: material
       character(:), allocatable :: line
@@ -320,7 +320,8 @@ contains
       if (unit == '1') unit = '-'
    end function unit_of
 
-   !> As few digits as read back to the same bits: as `number` writes it where that is enough, else up to 17 of them.
+   !> Writes a value in as few digits as read back to the same bits: as `number` writes it where that is enough, else in
+   !> up to 17 of them.
    function exact(value) result(string)
       real(wp), intent(in) :: value
       character(:), allocatable :: string

@@ -69,7 +69,7 @@ contains
       string = from_c(raw)
    end function text
 
-   !> The same within a table, whose cells end at a bar.
+   !> Text of an entry as a cell of a table, whose cells end at a bar.
    function cell(list, index, field) result(string)
       integer(c_int), intent(in) :: list, index, field
       character(:), allocatable :: string, plain

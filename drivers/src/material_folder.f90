@@ -9,7 +9,7 @@ module material_folder
 
    integer, parameter :: PATH_LENGTH = 1024
    character(*), parameter :: VARIABLE = 'MUD_MATERIALS'   !< Environment variable that names the folder.
-   !> Where the folder is, from that of the program: in a build tree, and installed.
+   !> Places of the folder, from that of the program: in a build tree, and installed.
    character(*), parameter :: PLACES(2) = [character(24) :: 'materials/', '../share/mud/materials/']
 
    interface

@@ -52,7 +52,7 @@ program mud_triax
    end if
 
 contains
-   !> That a case begins outside what its material was fitted to.
+   !> Warns of a case that begins outside what its material was fitted to.
    subroutine warn_of_use(test)
       type(case_t), intent(in) :: test
       character(:), allocatable :: text

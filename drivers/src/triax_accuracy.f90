@@ -27,7 +27,8 @@ module triax_accuracy
    real(wp), parameter :: LARGEST_TOLERANCE = 1.0e-4_wp, LEAST_TOLERANCE = 1.0e-12_wp
    real(wp), parameter :: TIGHT = 1.0e-3_wp              !< Below it the scheme of order 3 costs less.
    real(wp), parameter :: COARSE = 10.0_wp               !< First increments, times the default.
-   integer, parameter :: MOST_REFINEMENTS = 12           !< Of either: increments of a four thousandth.
+   integer, parameter :: MOST_REFINEMENTS = 12           !< Most refinements of increments, and of the tolerance:
+                                                         !< increments of a four thousandth.
    real(wp), parameter :: OF_COARSE = 4.0_wp/3.0_wp      !< Error over the difference to a run with a quarter of it.
    real(wp), parameter :: NO_CHANGE = 1.0e-3_wp          !< Share of the largest change of its unit that is none.
    real(wp), parameter :: WELL_BELOW = 0.1_wp            !< Share of the accuracy below which an error is not refined.
@@ -39,8 +40,8 @@ module triax_accuracy
       logical :: verified = .false.
       real(wp) :: change(size(COLUMNS)) = 0.0_wp   !< Largest change of every answer.
       real(wp) :: error(size(COLUMNS)) = 0.0_wp    !< Estimated error of every answer over its change; < 0: no answer.
-      type(stress_unit_t) :: unit                  !< Of the changes of stresses.
-      integer :: runs = 0, updates = 0             !< What the choice has cost.
+      type(stress_unit_t) :: unit                  !< Unit of the changes of stresses.
+      integer :: runs = 0, updates = 0             !< Cost of the choice.
    end type accuracy_t
 contains
    !> Sets increments, tolerance and scheme of a test that asks for an accuracy, and estimates the errors.
@@ -118,7 +119,7 @@ contains
    subroutine try(test, parts, share, scheme, moments, answer)
       type(case_t), intent(inout) :: test
       integer, intent(in) :: parts
-      real(wp), intent(in) :: share   !< Of the tolerance.
+      real(wp), intent(in) :: share   !< Share of the tolerance.
       integer, intent(in) :: scheme
       type(moments_t), intent(inout) :: moments
       type(accuracy_t), intent(inout) :: answer
@@ -196,8 +197,8 @@ contains
       end do
    end subroutine note_accuracy
 
-   !> What was asked for, what is estimated of every answer, what limits it. (answers + 2) Errors in %, changes in the
-   !> unit of their column.
+   !> Lines with the accuracy that was asked for, the estimate of every answer and what limits it. (answers + 2) Errors
+   !> in %, changes in the unit of their column.
    pure function accuracy_lines(answer) result(lines)
       type(accuracy_t), intent(in) :: answer
       character(LINE_LENGTH), allocatable :: lines(:)

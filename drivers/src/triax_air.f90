@@ -7,14 +7,14 @@ module triax_air
    private
    public :: air_t, closed_air_t, air_now_t, closing, air_of
 
-   !> What a sample holds beside its solids.
+   !> Air and water of a sample.
    type :: air_t
       real(wp) :: atmosphere = 0.0_wp   !< Absolute pressure where the air pressure is 0 [unit of stress].
       real(wp) :: henry = 0.0_wp        !< Volume of air that a volume of water dissolves, at its pressure [-].
       real(wp) :: stiffness = 0.0_wp    !< Bulk modulus of the water [unit of stress]; 0: incompressible.
    end type air_t
 
-   !> What stays while neither air nor water leaves, per volume of solids.
+   !> Quantities that stay while neither air nor water leaves, per volume of solids.
    type :: closed_air_t
       type(air_t) :: air
       real(wp) :: content = 0.0_wp      !< Absolute pressure times volume of all air [unit of stress].

@@ -19,7 +19,7 @@ module triax_c_api
    private
    public :: triax_run_text, triax_rows, triax_columns_, triax_column, triax_values, triax_remarks, triax_free
 
-   !> What a handle points to.
+   !> Result that a handle points to.
    type :: result_t
       type(table_t) :: table
    end type result_t
@@ -144,7 +144,7 @@ contains
       triax_values = 0
    end function triax_values
 
-   !> What the head of a file would say, and how stages ended: "name: text" lines. Returns how long it is.
+   !> Writes what the head of a file would say, and how stages ended: "name: text" lines. Returns how long it is.
    integer(c_int) function triax_remarks(handle, text, len) bind(c, name='mud_triax_remarks')
       type(c_ptr), value :: handle, text
       integer(c_int), value :: len
@@ -167,7 +167,7 @@ contains
       deallocate (result)
    end subroutine triax_free
 
-   !> What a handle points to; nothing without one.
+   !> Result that a handle points to; nothing without one.
    function result_of(handle) result(found)
       type(c_ptr), intent(in) :: handle
       type(result_t), pointer :: found

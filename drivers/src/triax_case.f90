@@ -25,7 +25,7 @@ module triax_case
       type(soil_t) :: soil
       type(point_t) :: start
       type(stage_t), allocatable :: stages(:)
-      real(wp) :: control_tolerance = CONTROL_TOLERANCE   !< Of what is held, relative.
+      real(wp) :: control_tolerance = CONTROL_TOLERANCE   !< Tolerance of what is held, relative.
       real(wp) :: accuracy = 0.0_wp      !< Relative error wanted in the histories; 0: none asked for.
       integer :: max_updates = huge(0)   !< The test stops after so many updates of the material.
    end type case_t
@@ -271,7 +271,8 @@ contains
       end if
    end subroutine read_initial
 
-   !> What air and water of the sample are like, and the air pressure of the start. Fault EXIT_INPUT: below vacuum.
+   !> Reads the properties of air and water of the sample, and the air pressure of the start. Fault EXIT_INPUT: below
+   !> vacuum.
    subroutine read_air(group, soil, p_a, fault)
       type(group_t), intent(in) :: group
       type(soil_t), intent(inout) :: soil

@@ -86,7 +86,7 @@ contains
       type(point_t), intent(in) :: point
       type(stage_run_t), intent(in) :: run
       real(wp), intent(in) :: error      !< Largest of what is held since the row before, relative.
-      integer, intent(in) :: stage   !< Its number; 0: the start.
+      integer, intent(in) :: stage   !< Number of the stage; 0: the start.
       real(wp) :: values(size(COLUMNS))
 
       values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &

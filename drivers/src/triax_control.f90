@@ -35,7 +35,7 @@ module triax_control
       integer :: control = 0
       integer :: increments = 0                   !< An open way has 1, and goes on beyond it.
       real(wp) :: lead_start = 0.0_wp, lead_change = 0.0_wp
-      real(wp) :: interval = 0.0_wp               !< Of the rows, in the unit of what leads.
+      real(wp) :: interval = 0.0_wp               !< Interval of the rows, in the unit of what leads.
       real(wp) :: strain_rows(6, ROWS) = 0.0_wp, stress_rows(6, ROWS) = 0.0_wp, changes(ROWS) = 0.0_wp
       logical :: effective = .false., keeps_water = .false., keeps_air = .false.
       type(closed_air_t) :: closed                !< Where the air is kept.
@@ -45,22 +45,22 @@ module triax_control
       real(wp) :: rate(7) = 0.0_wp                !< Unknowns of the last increment, per increment.
    end type plan_t
 
-   !> What a run cost.
+   !> Cost of a run, with what limits and keeps it.
    type :: tally_t
       integer :: updates = 0                 !< Calls of the library.
       integer :: max_updates = huge(0)       !< The test stops after so many.
-      integer :: increments = 0              !< Of all stages.
+      integer :: increments = 0              !< Number of increments of all stages.
       integer :: solved = 0                  !< Increments that needed a solution.
       integer :: cuts = 0                    !< Increments cut and retried.
-      real(wp) :: tolerance = CONTROL_TOLERANCE   !< Of what is held, relative.
+      real(wp) :: tolerance = CONTROL_TOLERANCE   !< Tolerance of what is held, relative.
       logical :: residuals = .false.         !< Print the error of every iteration.
       character(256) :: save_to = ''         !< File for the first update that the library refuses; blank: none.
       logical :: saved = .false.
-      character(REFUSAL_LENGTH) :: refusal = ''   !< What the law said of the first update that it refused.
+      character(REFUSAL_LENGTH) :: refusal = ''   !< Message of the law about the first update that it refused.
       real(wp) :: least_pressure = huge(1.0_wp)   !< Smallest p' after an increment, of the unit of the law.
-      integer :: guards(MOST_GUARDS) = 0     !< How often each guard of the law acted.
+      integer :: guards(MOST_GUARDS) = 0     !< Number of times that each guard of the law acted.
       real(wp) :: error = 0.0_wp             !< Largest error of a constraint since the caller set it to 0, relative.
-      real(wp) :: worst = 0.0_wp             !< The same, of the whole run.
+      real(wp) :: worst = 0.0_wp             !< Largest error of a constraint in the whole run, relative.
    end type tally_t
 
 contains
@@ -142,7 +142,7 @@ contains
    !> the law].
    pure real(wp) function lead(plan, k)
       type(plan_t), intent(in) :: plan
-      integer, intent(in) :: k   !< Its number.
+      integer, intent(in) :: k   !< Number of the increment.
 
       lead = plan%lead_start + plan%lead_change*real(k, wp)/real(max(plan%increments, 1), wp)
    end function lead

@@ -117,7 +117,7 @@ contains
       end if
    end subroutine remark
 
-   !> How a stage ended, behind its rows. Fault EXIT_OUTPUT: the file cannot be written.
+   !> Writes how a stage ended, behind its rows. Fault EXIT_OUTPUT: the file cannot be written.
    subroutine add_note(table, text, fault)
       type(table_t), intent(inout) :: table
       character(*), intent(in) :: text   !< "name: sentence"

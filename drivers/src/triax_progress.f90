@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What a run prints on the screen: progress, and the summary at the end.
+!> Prints the progress of a run on the screen, and the summary at its end.
 module triax_progress
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use kinds, only: wp
@@ -35,7 +35,7 @@ contains
    !> A line on the error output after 2 s, and then each time the run has become half as long again.
    subroutine show_progress(timer, share, what)
       type(timer_t), intent(inout) :: timer
-      real(wp), intent(in) :: share   !< Of the work, done so far. [-], > 0.
+      real(wp), intent(in) :: share   !< Share of the work that is done so far. [-], > 0.
       character(*), intent(in) :: what
       real(wp) :: seconds
 
@@ -48,13 +48,13 @@ contains
    !> Whether it is time for a line. Asked after every increment, before the line is put together.
    logical function progress_is_due(timer, share)
       type(timer_t), intent(in) :: timer
-      real(wp), intent(in) :: share   !< Of the work, done so far [-].
+      real(wp), intent(in) :: share   !< Share of the work that is done so far [-].
 
       progress_is_due = .false.
       if (timer%shown .and. share > 0.0_wp) progress_is_due = clock() - timer%start >= timer%next
    end function progress_is_due
 
-   !> Where the test ended and what it cost. On the standard output; nothing where the table goes there.
+   !> Shows where the test ended and what it cost. On the standard output; nothing where the table goes there.
    subroutine show_summary(test, table, point, tally, timer)
       type(case_t), intent(in) :: test
       type(table_t), intent(in) :: table

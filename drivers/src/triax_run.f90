@@ -17,7 +17,7 @@ module triax_run
    private
    public :: run_test
 contains
-   !> From the start of the test to its end, or to where it stops: rows so far are kept, and the table is closed.
+   !> Runs a test from its start to its end, or to where it stops: rows so far are kept, and the table is closed.
    !> Faults: those of begin_stage, next_increment and of the table, with test and stage before their text.
    subroutine run_test(test, table, tally, timer, point, fault, moments)
       type(case_t), intent(in) :: test

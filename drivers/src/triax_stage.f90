@@ -17,13 +17,13 @@ module triax_stage
 
    integer, parameter :: ROWS = 6          !< Constraints of a stage beside the one on suction.
 
-   !> What can lead a stage.
+   !> Quantities that can lead a stage.
    integer, parameter :: BY_EPS_A = 1, BY_EPS_V = 2, BY_GAMMA = 3, BY_SIGMA_A = 4, BY_P = 5, BY_Q = 6, BY_TAU = 7, &
                          BY_SUCTION = 8, BY_D_EPS = 9, BY_D_SIGMA = 10, BY_CHANGES = 11
    integer, parameter :: PER_STRAIN = 1, PER_PRESSURE = 2, PER_SHARE = 3   !< Unit of increments: [-], stress, of 1.
 
    type :: quantity_t
-      character(16) :: key       !< That gives its value at the end.
+      character(16) :: key       !< Key that gives its value at the end.
       character(8) :: name       !< For `cycle_by`.
       integer :: unit            !< PER_*
    end type quantity_t
@@ -78,7 +78,7 @@ module triax_stage
    real(wp), parameter :: DEVIATOR_ROW(6) = [-0.5_wp, -0.5_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
    real(wp), parameter :: SHEAR_ROW(6) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp]     !< 13: the axis is 3.
 contains
-   !> What may lead a control. BY_*; where cycles can run, the strain first.
+   !> Quantities that may lead a control. BY_*; where cycles can run, the strain first.
    pure function leads_of(control) result(leads)
       integer, intent(in) :: control   !< Place in CONTROL_NAMES.
       integer, allocatable :: leads(:)
@@ -128,7 +128,7 @@ contains
       general_control = control >= STRAIN_PATH .or. control == SHEAR_DRAINED .or. control == SHEAR_CONSTANT_VOLUME
    end function general_control
 
-   !> How a quantity is made of strain and stress.
+   !> Rows by which a quantity is made of strain and stress.
    pure subroutine quantity_rows(lead, strain_row, stress_row)
       integer, intent(in) :: lead   !< BY_*; rows of suction and of changes are 0.
       real(wp), intent(out) :: strain_row(6), stress_row(6)   !< Factors of 11, 22, 33, 12, 13, 23.

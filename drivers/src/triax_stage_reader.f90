@@ -25,7 +25,7 @@ contains
    !> missing, contradict each other or have no effect.
    subroutine read_stage(group, unit, stage, fault)
       type(group_t), intent(in) :: group
-      type(stress_unit_t), intent(in) :: unit   !< Of the material.
+      type(stress_unit_t), intent(in) :: unit   !< Unit of stress of the material.
       type(stage_t), intent(out) :: stage
       type(fault_t), intent(inout) :: fault
       logical :: found
@@ -167,7 +167,7 @@ contains
       end if
    end subroutine read_cycles
 
-   !> What leads a stage of one way, and where to.
+   !> Reads the quantity that leads a stage of one way, and its value at the end.
    subroutine read_lead(group, unit, stage, fault)
       type(group_t), intent(in) :: group
       type(stress_unit_t), intent(in) :: unit

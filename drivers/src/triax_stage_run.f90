@@ -1,8 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> How a stage runs: one way, or the ways between the reversals of its cycles, and what ends it early.
-!>
-!> Strain cycles reverse at given strains. Stress cycles drive the strain until the stress is reached, which is found
-!> within the increment: a liquefied sample has no stiffness to solve with, but a strain can always be driven.
+!> Runs a stage: one way, or the ways between the reversals of its cycles, and what ends it early. Strain cycles reverse
+!> at given strains. Stress cycles drive the strain until the stress is reached, which is found within the increment: a
+!> liquefied sample has no stiffness to solve with, but a strain can always be driven.
 module triax_stage_run
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, EXIT_RUN
@@ -20,7 +19,7 @@ module triax_stage_run
    real(wp), parameter :: MAX_WAY = 0.5_wp                 !< Strain between two reversals of a stress cycle [-].
    real(wp), parameter :: ON_GRID = 1.0e-6_wp              !< Share of an output interval that counts as none: rounding.
 
-   !> Where a stage is.
+   !> State of a stage that runs.
    type :: stage_run_t
       type(plan_t) :: plan
       logical :: finished = .false.
@@ -36,7 +35,7 @@ module triax_stage_run
       real(wp) :: pressure_start = 0.0_wp
       real(wp) :: p_w_start = 0.0_wp       !< Water pressure where the stage begins [unit of stress].
       real(wp) :: r_u = 0.0_wp             !< Pore pressure that has built up in this stage over `confining` [-].
-      character(200) :: note = ''          !< How it ended, where that is not plain.
+      character(200) :: note = ''          !< Sentence on its end, where that is not plain.
    end type stage_run_t
 
 contains
@@ -177,7 +176,7 @@ contains
       end if
    end subroutine next_way
 
-   !> How far the stress of a cycle still has to go [unit of stress of the law].
+   !> Distance of the stress of a cycle from its reversal [unit of stress of the law].
    pure real(wp) function missing(soil, stage, run, point)
       type(soil_t), intent(in) :: soil
       type(stage_t), intent(in) :: stage

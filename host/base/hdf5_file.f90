@@ -20,13 +20,13 @@ module hdf5_file
    private
    public :: h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extents_of
 
-   integer(size_t), parameter :: GROWTH = 1048576   !< By which a file in memory grows [bytes].
-   integer, parameter :: TEXT_LENGTH = 64           !< Of a text that is read back.
+   integer(size_t), parameter :: GROWTH = 1048576   !< Step by which a file in memory grows [bytes].
+   integer, parameter :: TEXT_LENGTH = 64           !< Length of a text that is read back.
 
    type :: h5_t
       integer(hid_t) :: id = -1
       logical :: good = .true.   !< False after the first call that failed.
-      character(:), allocatable :: path   !< Of a new file; it is written beside it and then gets this name.
+      character(:), allocatable :: path   !< Name of a new file; it is written beside it and then gets this name.
    end type h5_t
 
    !> An array of any size, with one or two dimensions, as a dataset; its folders are made. An empty one is left out.
@@ -71,8 +71,8 @@ contains
       call h5pclose_f(access, status)
    end subroutine new_file
 
-   !> From memory to the disk; the file is closed. good is false where this call or one before it failed; a file of that
-   !> name then stays.
+   !> Writes a file from memory to the disk and closes it. good is false where this call or one before it failed; a file
+   !> of that name then stays.
    subroutine write_file(file, good)
       type(h5_t), intent(inout) :: file
       logical, intent(out) :: good

@@ -12,9 +12,9 @@ module contact_friction
    public :: friction_t, traction_t, has_friction, pair_slips, drag_response, traction_at
    public :: tangential_stiffness, touching_share
 
-   real(wp), parameter :: TANGENTIAL_SHARE = 0.1_wp   !< Of the penalty, where nothing else is given [-].
+   real(wp), parameter :: TANGENTIAL_SHARE = 0.1_wp   !< Share of the penalty, where nothing else is given [-].
 
-   !> What a step starts from.
+   !> State of friction from which a step starts.
    type :: friction_t
       real(wp), allocatable :: slave_dx(:, :), master_dx(:, :)   !< (2, nodes) Way since the start of the step [m].
       real(wp), allocatable :: traction(:)   !< (slave nodes) At the start, along the slave's tangent [kPa].
@@ -85,7 +85,7 @@ contains
       t%value = sign(limit, t%value)
    end function traction_at
 
-   !> What a pair adds to weight times slip of the three slave nodes, its derivatives, and drag(:, A) = int M_A (t N_s,
+   !> Parts of a pair in weight times slip of the three slave nodes, their derivatives, and drag(:, A) = int M_A (t N_s,
    !> -t N_m) 2 pi r ds, the nodal forces of a unit traction at node A; weight times slip is drag times the way of the
    !> nodes. The pair must be one whose normals hit, see pair_gaps. docs/theory/contact.md section 9.
    pure subroutine pair_slips(x, dx, overlap, axisymmetric, weighted_slip, d_weighted_slip, drag)

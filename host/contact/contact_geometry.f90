@@ -30,7 +30,7 @@ contains
    !> more than two edges, or in two and the middle of one.
    pure subroutine contact_prepare(geometry, slave_nodes, slave_edges, master_nodes, master_edges, options, status)
       type(contact_geometry_t), intent(out) :: geometry
-      integer, intent(in) :: slave_nodes, master_nodes   !< Their numbers.
+      integer, intent(in) :: slave_nodes, master_nodes   !< Numbers of nodes of both surfaces.
       integer, intent(in) :: slave_edges(:, :), master_edges(:, :)   !< (3, edges)
       type(contact_options_t), intent(in) :: options
       type(contact_status_t), intent(out) :: status

@@ -24,19 +24,20 @@ module contact_interfaces
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
              contact_forces, mean_contact_forces, rounding_of_ties, stretch_ties, exchange_contacts
 
-   real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Of a displacement: of the node, and of its place by three unknowns.
+   real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of a displacement: of the node, and of its place by three
+                                               !< unknowns.
 
    !> A boundary with numbers of its own.
    type :: surface_t
-      integer, allocatable :: node(:)       !< Its nodes in the mesh; of a plate none.
+      integer, allocatable :: node(:)       !< Nodes of the surface in the mesh; a plate has none.
       integer, allocatable :: edges(:, :)   !< (3, edges)
       real(wp), allocatable :: x0(:, :)     !< (2, nodes) at the start [m]
    end type surface_t
 
    !> A plate in the unknowns.
    type :: plate_link_t
-      integer :: node = 0   !< It carries the displacements; 0: there is no plate.
-      integer :: turn = 0   !< Its u_z is the lever times the angle, of a plate that turns.
+      integer :: node = 0   !< Node that carries the displacements; 0: there is no plate.
+      integer :: turn = 0   !< Node whose u_z is the lever times the angle, of a plate that turns.
       type(plate_motion_t) :: motion
    end type plate_link_t
 
@@ -46,32 +47,33 @@ module contact_interfaces
       type(contact_workspace_t) :: work
       type(contact_result_t) :: result      !< Outcome at the iterates of a step.
       type(contact_result_t) :: probe       !< Outcome at other displacements, independent of the step.
-      type(contact_point_t), allocatable :: point(:)   !< Of every slave node at the start of the step.
-      logical :: rubs = .false.             !< It has friction.
-      type(friction_t) :: friction          !< What the step starts from.
+      type(contact_point_t), allocatable :: point(:)   !< State of every slave node at the start of the step.
+      logical :: rubs = .false.             !< The contact has friction.
+      type(friction_t) :: friction          !< State of friction from which the step starts.
       real(wp), allocatable :: slave_u(:, :), master_u(:, :)   !< (2, nodes) Displacements there [m].
       type(plate_response_t) :: on_plate    !< Forces where the master is a plate.
-      type(plate_link_t) :: plate           !< Its face is the master.
+      type(plate_link_t) :: plate           !< Plate whose face is the master.
       real(wp), allocatable :: spring(:)    !< (slave nodes) Stiffness where they are tied to the plate [kN/m].
       type(surface_t) :: slave, master
-      integer, allocatable :: unknown(:)    !< Of every unknown of the kernel, or of slave and plate; 0: none.
+      integer, allocatable :: unknown(:)    !< Unknown of the equations for every unknown of the kernel, or of slave and
+                                            !< plate; 0: none.
       logical :: acts = .true.              !< In this stage.
-      logical :: told = .false.             !< Its warning has been given.
+      logical :: told = .false.             !< The warning of this contact has been given.
       ! Outcome of the last evaluation within a step.
       real(wp) :: thrust = 0.0_wp           !< Vertical force on the master, upwards [kN].
-      real(wp) :: energy = 0.0_wp           !< Of the penalty [kJ].
-      real(wp) :: area = 0.0_wp             !< Of the active nodes [m2].
+      real(wp) :: energy = 0.0_wp           !< Energy of the penalty [kJ].
+      real(wp) :: area = 0.0_wp             !< Area of the active nodes [m2].
       integer :: active = 0
       integer :: sliding = 0                !< Nodes whose friction is at its limit.
       real(wp) :: drag = 0.0_wp             !< Friction on the master along the slave's tangent, summed up [kN].
-      real(wp) :: rounding = 0.0_wp         !< Of the forces of its springs [kN].
+      real(wp) :: rounding = 0.0_wp         !< Rounding of the forces of its springs [kN].
       integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
    end type contact_interface_t
 
    type :: contacts_t
       type(contact_interface_t), allocatable :: interfaces(:)
       integer, allocatable :: extra(:, :)   !< (2, pairs) unknowns that contacts have brought together so far.
-      type(contact_status_t) :: status      !< Of the first that failed.
+      type(contact_status_t) :: status      !< Status of the first interface that failed.
    end type contacts_t
 contains
    !> Surface of the edges of a boundary.
@@ -92,7 +94,7 @@ contains
       surface%x0 = x(:, surface%node)
    end function surface_of
 
-   !> Between the ends of its edges [m].
+   !> Length of the shortest edge of a surface, between its ends [m].
    pure real(wp) function shortest_edge(surface) result(length)
       type(surface_t), intent(in) :: surface
 
@@ -119,7 +121,7 @@ contains
    subroutine new_interface(dofs, slave, master, plate, options, one, status)
       type(dofs_t), intent(in) :: dofs
       type(surface_t), intent(in) :: slave, master
-      type(plate_link_t), intent(in) :: plate   !< That the master is the face of, if it is one.
+      type(plate_link_t), intent(in) :: plate   !< Plate whose face is the master, if it is one.
       type(contact_options_t), intent(in) :: options
       type(contact_interface_t), intent(out) :: one
       type(contact_status_t), intent(out) :: status
@@ -228,8 +230,8 @@ contains
       end do
    end function evaluate_contacts
 
-   !> The same without slopes, into `probe` of every interface that acts: the outcome of the last evaluation within a
-   !> step stays.
+   !> Evaluates the contacts without slopes, into `probe` of every interface that acts: the outcome of the last
+   !> evaluation within a step stays.
    logical function probe_contacts(contacts, x) result(good)
       type(contacts_t), intent(inout) :: contacts
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
@@ -267,7 +269,7 @@ contains
       end if
    end subroutine probe_one
 
-   !> Of its nodes, or of the face of the plate [m].
+   !> Displacements of the nodes of the master, or of the face of the plate [m].
    pure function displacements_of_master(t, x) result(u)
       type(contact_interface_t), intent(in) :: t
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
@@ -306,8 +308,8 @@ contains
       end do
    end function begin_friction
 
-   !> Before a correction: which way the nodes slide now, so that none turns with it from one way to the other. At the
-   !> start and the end of a step (`fresh`) no node has a way. docs/theory/contact.md section 9.
+   !> Notes before a correction which way the nodes slide now, so that none turns with it from one way to the other. At
+   !> the start and the end of a step (`fresh`) no node has a way. docs/theory/contact.md section 9.
    subroutine follow_friction(contacts, fresh)
       type(contacts_t), intent(inout) :: contacts
       logical, intent(in) :: fresh
@@ -374,7 +376,7 @@ contains
    subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status, friction)
       type(contact_geometry_t), intent(in) :: geometry
       type(surface_t), intent(in) :: slave, master
-      type(plate_link_t), intent(in) :: plate   !< Its face is the master, if it is one.
+      type(plate_link_t), intent(in) :: plate   !< Plate whose face is the master, if it is one.
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       logical, intent(in) :: with_tangent
       type(contact_workspace_t), intent(inout) :: work
@@ -397,7 +399,7 @@ contains
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(inout) :: pattern
-      logical, intent(out) :: changed   !< It has grown.
+      logical, intent(out) :: changed   !< Whether the pattern has grown.
       integer, allocatable :: missing(:, :)
       integer :: n, i
 
@@ -500,8 +502,8 @@ contains
       end do
    end subroutine stretch_ties
 
-   !> What rounding leaves of the forces between boundaries and the plates that they are tied to: small differences of
-   !> large displacements, times stiff springs [kN].
+   !> Rounding of the forces between boundaries and the plates that they are tied to: small differences of large
+   !> displacements, times stiff springs [kN].
    pure real(wp) function rounding_of_ties(contacts) result(rounding)
       type(contacts_t), intent(in) :: contacts
       integer :: i
@@ -517,7 +519,7 @@ contains
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: x0(:, :), x1(:, :)   !< (FIELDS, nodes) [m]
-      real(wp) :: force(dofs%n)                    !< Of every unknown [kN].
+      real(wp) :: force(dofs%n)                    !< Force on every unknown [kN].
       real(wp), allocatable :: before(:), after(:)
 
       force = 0.0_wp
@@ -532,7 +534,7 @@ contains
       type(contacts_t), intent(inout) :: contacts
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
-      real(wp), allocatable, intent(out) :: force(:)   !< Of every unknown [kN]. (unknowns)
+      real(wp), allocatable, intent(out) :: force(:)   !< Force on every unknown [kN]. (unknowns)
 
       allocate (force(dofs%n), source=0.0_wp)
       good = probe_contacts(contacts, x)

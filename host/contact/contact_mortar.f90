@@ -28,7 +28,7 @@ module contact_mortar
                                                   0.447213595499957939282_wp, 1.0_wp]
    real(wp), parameter :: END_SHARE(POINTS) = [1.0_wp, 5.0_wp, 5.0_wp, 1.0_wp]/6.0_wp
    integer, parameter :: LARGEST_SEGMENTS = 3   !< Two ends, and the two middle nodes between them.
-   integer, parameter :: LARGEST_POINTS = LARGEST_SEGMENTS*POINTS   !< Of a pair.
+   integer, parameter :: LARGEST_POINTS = LARGEST_SEGMENTS*POINTS   !< Most points of a pair.
    !> Cosine of the steepest master edge that a slave edge sees: beyond 78 degrees nothing is pressed any more.
    real(wp), parameter :: LEAST_FACING = 0.2_wp
    !> A ray may miss the edge it must hit by so much of its length: rounding of an end next to a short segment.
@@ -71,7 +71,7 @@ contains
       m = [max(-s, 0.0_wp), max(s, 0.0_wp), 1.0_wp - abs(s)]
    end function hats
 
-   !> Their slopes; a point never lies on the middle node, where segments end. By s [-].
+   !> Slopes of the hat functions; a point never lies on the middle node, where segments end. By s [-].
    pure function hat_slopes(s) result(dm)
       real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: dm(3)
@@ -149,7 +149,7 @@ contains
       between = s - lower > SAME_PLACE .and. upper - s > SAME_PLACE
    end function between
 
-   !> How the foot s of master node j moves: the derivative of (x_j - x(s)).t(s) = 0. By the 12 local coordinates [1/m]:
+   !> Derivative of the foot s of master node j, from that of (x_j - x(s)).t(s) = 0. By the 12 local coordinates [1/m]:
    !> docs/theory/contact.md section 3.2.
    pure function end_slope(x, slave, j, s) result(d_s)
       real(wp), intent(in) :: x(2, 6), s   !< Local coordinates [m], place in [-1, 1].
@@ -176,7 +176,7 @@ contains
       real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
       integer, intent(in) :: segment
-      real(wp), intent(in) :: position, share   !< Of the point in [-1, 1], and its part of 2.
+      real(wp), intent(in) :: position, share   !< Place of the point in [-1, 1], and its part of 2.
       logical, intent(in) :: axisymmetric
       type(point_t), intent(out) :: p
       real(wp), intent(out) :: missed   !< [-]
@@ -260,7 +260,7 @@ contains
       end do
    end subroutine pair_points
 
-   !> What a pair of edges adds to the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
+   !> Parts of a pair of edges at the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
    !> derivatives, and push(:, A) = int M (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
    !> docs/theory/contact.md section 2.3. `missed` as of integration_point; where it is > 0 the rest is of no use.
    pure subroutine pair_gaps(x, overlap, axisymmetric, weight, weighted_gap, d_weight, d_weighted_gap, push, missed)

@@ -19,7 +19,7 @@ module contact_penalty
              contact_evaluate, points_of, slid_work
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
-   real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Of the penalty, where both gaps are penalised [-].
+   real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Share of the penalty, where both gaps are penalised [-].
 
    !> A slave edge with a master edge opposite.
    type :: pair_t
@@ -32,7 +32,7 @@ module contact_penalty
    !> Room for an evaluation; what it holds between two is of no meaning.
    type :: contact_workspace_t
       private
-      integer, allocatable :: first_pair(:)     !< Of a slave edge.
+      integer, allocatable :: first_pair(:)     !< First pair of every slave edge.
       type(pair_t), allocatable :: pair(:)
       type(search_t) :: search
       integer, allocatable :: position(:), touched(:)   !< Unknowns that a nodal gap depends on.
@@ -40,11 +40,11 @@ module contact_penalty
       real(wp), allocatable :: load(:)                  !< int M_A p 2 pi r dGamma, pointwise form.
    end type contact_workspace_t
 
-   !> What an evaluation found.
+   !> Outcome of an evaluation.
    type :: contact_result_t
       real(wp) :: energy = 0.0_wp               !< 1/2 eps sum_A w_A <-g_A>**2, or eq. (18) [kN m] (plane: kN)
       real(wp), allocatable :: force(:)         !< Slope of the energy: minus what contact exerts on the nodes [kN]
-      integer :: triplets = 0                   !< How many are filled.
+      integer :: triplets = 0                   !< Number of triplets that are filled.
       integer, allocatable :: row(:)
       integer, allocatable :: column(:)
       real(wp), allocatable :: value(:)         !< d force/d displacement; equal places are to be added [kN/m]
@@ -306,8 +306,8 @@ contains
       end do
    end subroutine add_friction
 
-   !> What sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is not
-   !> the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
+   !> Work that sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is
+   !> not the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
    pure real(wp) function slid_work(options, friction, result) result(total)
       type(contact_options_t), intent(in) :: options
       type(friction_t), intent(in) :: friction
@@ -325,10 +325,10 @@ contains
       end do
    end function slid_work
 
-   !> What a pair adds to forces, energy and tangent.
+   !> Adds the parts of a pair to forces, energy and tangent.
    pure subroutine add_pair(geometry, options, pair, x, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
-      type(contact_options_t), intent(in) :: options   !< Of the nodal or of the pointwise form.
+      type(contact_options_t), intent(in) :: options   !< Options of the nodal or of the pointwise form.
       type(pair_t), intent(in) :: pair
       real(wp), intent(in) :: x(2, 6)                  !< Local coordinates [m].
       logical, intent(in) :: with_tangent
@@ -360,7 +360,7 @@ contains
 
    !> Forces of a pair, and its stiffness where the tangent is wanted.
    pure subroutine add_response(unknown, response, with_tangent, result)
-      integer, intent(in) :: unknown(12)   !< As unknowns_of numbers them.
+      integer, intent(in) :: unknown(12)   !< Numbers of the unknowns, as of unknowns_of.
       type(response_t), intent(in) :: response
       logical, intent(in) :: with_tangent
       type(contact_result_t), intent(inout) :: result
@@ -389,7 +389,7 @@ contains
 
    !> The penalty of either form; 0: it takes no part. docs/theory/contact.md section 2.4.
    pure subroutine share_penalty(options, nodal, pointwise)
-      type(contact_options_t), intent(in) :: options   !< As the caller gave them.
+      type(contact_options_t), intent(in) :: options   !< Options as the caller gave them.
       type(contact_options_t), intent(out) :: nodal, pointwise
 
       nodal = options
@@ -407,7 +407,7 @@ contains
       end select
    end subroutine share_penalty
 
-   !> What the change of a nodal pressure adds to the tangent, dp_A = by_gap dg_A times what a unit of p_A pushes; with
+   !> Adds the change of a nodal pressure to the tangent, dp_A = by_gap dg_A times what a unit of p_A pushes; with
    !> by_slip that of a nodal traction, dt_A = by_gap dg_A + by_slip ds_A times what a unit of t_A drags. Over all
    !> unknowns that the gap depends on.
    pure subroutine add_node(geometry, node, work, result, by_gap, by_slip)
@@ -465,7 +465,7 @@ contains
       unknown(2:12:2) = unknown(1:11:2) + 1
    end function unknowns_of
 
-   !> What the nodes of a pair of edges have, slave first.
+   !> Values at the nodes of a pair of edges, slave first.
    pure function of_edges(geometry, slave, master, of_slave, of_master) result(of_pair)
       type(contact_geometry_t), intent(in) :: geometry
       integer, intent(in) :: slave, master                     !< Numbers of the edges.

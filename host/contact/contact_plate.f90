@@ -11,9 +11,9 @@ module contact_plate
              plate_positions, plate_slopes, gather_on_plate, force_on_plate
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
-   integer, parameter :: TURN = 3            !< Of the unknowns of a motion in the plane.
+   integer, parameter :: TURN = 3            !< Number of unknowns of a motion in the plane.
 
-   !> How a plate moves: vertically, or in its plane: along both axes and turning, from r to z, about its centre.
+   !> Motion of a plate: vertical, or in its plane: along both axes and turning, from r to z, about its centre.
    type :: plate_motion_t
       logical :: turns = .false.
       real(wp) :: center(2) = 0.0_wp   !< At the start [m].
@@ -24,7 +24,7 @@ module contact_plate
    type :: plate_response_t
       real(wp), allocatable :: force(:)      !< [kN]
       real(wp), allocatable :: size(:)       !< Sum of the magnitudes that a force is made of [kN].
-      integer :: triplets = 0                !< How many are filled.
+      integer :: triplets = 0                !< Number of triplets that are filled.
       integer, allocatable :: row(:)
       integer, allocatable :: column(:)
       real(wp), allocatable :: value(:)      !< d force/d displacement [kN/m]
@@ -107,7 +107,7 @@ contains
       end do
    end function plate_slopes
 
-   !> From the centre to the nodes of the face, where they are now (2, nodes) [m].
+   !> Arms from the centre to the nodes of the face, where they are now (2, nodes) [m].
    pure function turned_arms(motion, x0, q) result(arms)
       type(plate_motion_t), intent(in) :: motion
       real(wp), intent(in) :: x0(:, :), q(:)
@@ -121,7 +121,7 @@ contains
    pure function force_on_plate(geometry, result, slopes) result(force)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_result_t), intent(in) :: result
-      real(wp), intent(in) :: slopes(:, :)   !< As of plate_slopes.
+      real(wp), intent(in) :: slopes(:, :)   !< Slopes of the positions, as of plate_slopes.
       real(wp) :: force(size(slopes, 1))
       integer :: i, n
 

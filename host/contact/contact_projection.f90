@@ -104,7 +104,7 @@ contains
                          -2.0_wp*dot_product(edge%bend, edge%bend)], s, where_it_is)
    end subroutine project_point
 
-   !> Where the line through `point` perpendicular to `t` meets an edge that runs against t: (x(s) - point).t = 0.
+   !> Finds where the line through `point` perpendicular to `t` meets an edge that runs against t: (x(s) - point).t = 0.
    !> docs/theory/contact.md section 2.1.
    pure subroutine follow_normal(edge, point, t, s, where_it_is)
       type(edge_t), intent(in) :: edge

@@ -12,7 +12,7 @@ module contact_response
    private
    public :: response_t, pair_response, add_work
 
-   !> What a pair adds, in local coordinates.
+   !> Forces and stiffness of a pair, in local coordinates.
    type :: response_t
       real(wp) :: force(12) = 0.0_wp           !< To be added to the internal forces [kN]
       real(wp) :: stiffness(12, 12) = 0.0_wp   !< d force/d coordinates [kN/m]
@@ -26,9 +26,9 @@ contains
    pure subroutine pair_response(x, overlap, options, at_ends, pressure, with_stiffness, response, missed)
       real(wp), intent(in) :: x(2, 6)                   !< Local coordinates as in contact_mortar [m].
       type(overlap_t), intent(in) :: overlap
-      type(contact_options_t), intent(in) :: options    !< Of the nodal or the pointwise form.
+      type(contact_options_t), intent(in) :: options    !< Options of the nodal or the pointwise form.
       logical, intent(in) :: at_ends                    !< Points at the ends of segments too.
-      real(wp), intent(in) :: pressure(3)               !< Of the slave nodes [kPa]; not used by the pointwise form.
+      real(wp), intent(in) :: pressure(3)   !< Pressures of the slave nodes [kPa]; not used by the pointwise form.
       logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
       real(wp), intent(out) :: missed   !< [-]

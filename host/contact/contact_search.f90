@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Which master edges may lie opposite a slave edge: boxes around the edges, sorted into the cells of a grid, so that
-!> the work grows with the number of edges and not with its square. Cells are kept in a hashed list, so that their
-!> number does not matter; two cells that share a place in it cost one comparison.
+!> Search for the master edges that may lie opposite a slave edge: boxes around the edges, sorted into the cells of a
+!> grid, so that the work grows with the number of edges and not with its square. Cells are kept in a hashed list, so
+!> that their number does not matter; two cells that share a place in it cost one comparison.
 module contact_search
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
@@ -34,7 +34,7 @@ contains
    !> Makes room for so many edges.
    pure subroutine prepare_search(search, slaves, masters)
       type(search_t), intent(out) :: search
-      integer, intent(in) :: slaves, masters   !< Their numbers.
+      integer, intent(in) :: slaves, masters   !< Numbers of edges of both surfaces.
 
       allocate (search%place_first(PLACES_PER_EDGE*max(masters, 1) + 3), search%seen_by(masters))
       allocate (search%first(slaves + 1), search%candidate(4*(slaves + masters)), search%entry(8*masters))

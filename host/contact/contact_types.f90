@@ -41,8 +41,8 @@ module contact_types
    type :: contact_status_t
       integer :: code = CONTACT_OK    !< One of the codes above.
       integer :: index = 0            !< Edge or node concerned, from 1; 0 if there is none.
-      logical :: master = .false.     !< It is one of the master's.
-      real(wp) :: value = 0.0_wp      !< What was found.
+      logical :: master = .false.     !< The edge or node is one of the master.
+      real(wp) :: value = 0.0_wp      !< Value that was found.
    end type contact_status_t
 
    integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.

@@ -16,7 +16,7 @@ module carried_slopes
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
 
    type :: slopes_t
-      logical :: known = .false.             !< Those of the state where the next step begins are here.
+      logical :: known = .false.             !< The slopes are those of the state where the next step begins.
       real(wp), allocatable :: strain(:, :, :)   !< (4, 4, points) d sigma'/d strain [kPa]
       real(wp), allocatable :: suction(:, :)     !< (4, points) d sigma'/d p_c [-]
       real(wp), allocatable :: water(:, :)       !< (2, points) d S_w/d volume strain [-], d S_w/d p_c [1/kPa]
@@ -24,7 +24,7 @@ module carried_slopes
 contains
    !> Room for the slopes of all points of a mesh; none are known yet.
    pure function new_slopes(points) result(slopes)
-      integer, intent(in) :: points   !< Their number.
+      integer, intent(in) :: points   !< Number of points.
       type(slopes_t) :: slopes
 
       allocate (slopes%strain(PLANE, PLANE, points), slopes%suction(PLANE, points), slopes%water(2, points), &
@@ -52,8 +52,8 @@ contains
    pure subroutine follow_slopes(n, first, slopes, stress, e, s_w, strain, d_suction, answer)
       integer, intent(in) :: n, first
       type(slopes_t), intent(in) :: slopes
-      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)        !< Of these points before the step. (6, n) [kPa], (n),
-                                                                !< (n) [-].
+      real(wp), intent(in) :: stress(:, :), e(:), s_w(:)        !< Stress, void ratio and saturation of these points
+                                                                !< before the step. (6, n) [kPa], (n), (n) [-].
       real(wp), intent(in) :: strain(:, :), d_suction(:)        !< Increments of the step. (6, n) [-], (n) [kPa].
       type(response_t), intent(inout) :: answer
       real(wp) :: volume

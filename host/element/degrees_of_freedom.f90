@@ -82,7 +82,8 @@ contains
       end do
    end subroutine number_unknowns
 
-   !> Of a rigid body that moves in the plane: u_r, u_z and the rotation, which is the u_z of a node of its own.
+   !> Unknowns of a rigid body that moves in the plane: u_r, u_z and the rotation, which is the u_z of a node of its
+   !> own.
    pure function unknowns_of_body(dofs, node, turn) result(unknowns)
       type(dofs_t), intent(in) :: dofs
       integer, intent(in) :: node, turn   !< Nodes of the displacements and of the rotation.
@@ -94,7 +95,7 @@ contains
    !> Makes nodes share one unknown of a field.
    pure subroutine tie(nodes, field, ties)
       integer, intent(in) :: nodes(:), field   !< (n); one of AT_...
-      integer, intent(inout) :: ties(:, :)   !< As of number_unknowns.
+      integer, intent(inout) :: ties(:, :)   !< Leaders of tied nodes, as of number_unknowns.
 
       if (size(nodes) > 0) ties(field, nodes) = minval(nodes)
    end subroutine tie
@@ -103,7 +104,7 @@ contains
    !> docs/theory/host.md section 7.6.
    pure subroutine tie_pairs(pairs, fields_tied, ties)
       integer, intent(in) :: pairs(:, :), fields_tied   !< (2, n) nodes; number of fields.
-      integer, intent(inout) :: ties(:, :)   !< As of number_unknowns.
+      integer, intent(inout) :: ties(:, :)   !< Leaders of tied nodes, as of number_unknowns.
       integer :: f, k, leader, i, old(2)
 
       do k = 1, size(pairs, 2)

@@ -20,11 +20,12 @@ module element_equations
 
    integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
    integer, parameter :: LAST_U = 12
-   !> Of momentum a step: accelerations are differences of velocities that large, 1e-6 leaves room for their rounding.
+   !> Share of the momentum of a step that is a floor of the forces: accelerations are differences of velocities that
+   !> large, 1e-6 leaves room for their rounding.
    real(wp), parameter :: FLIGHT_SHARE = 1.0e-6_wp
    integer, parameter :: STRAIN_TOO_LARGE = 1000   !< Code of a strain beyond 1 in a step: no law is asked.
 
-   !> What the nodes of an element say. Pressures with the nodes side by side: p_w, p_c; set where nodes carry them.
+   !> Values at the nodes of an element. Pressures with the nodes side by side: p_w, p_c; set where nodes carry them.
    type :: nodes_t
       real(wp) :: u0(DISPLACEMENTS, 6), u1(DISPLACEMENTS, 6)   !< Before and after [m].
       real(wp) :: v0(DISPLACEMENTS, 6)                         !< Before [m/s].
@@ -38,13 +39,13 @@ module element_equations
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
       real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Sums of magnitudes, of volume balances those of strain rates and
                                                  !< fluxes, of momentum those of weight and of the rounding of inertia.
-      integer :: source = BY_MATERIAL            !< What gives the response of the points, see carried_slopes.
-      integer :: fallback = NO_FALLBACK          !< What replaces soft tangents, see tangent_fallback.
+      integer :: source = BY_MATERIAL            !< Source of the response of the points, see carried_slopes.
+      integer :: fallback = NO_FALLBACK          !< Kind of replacement of soft tangents, see tangent_fallback.
       integer :: replaced = 0                    !< Number of points whose tangent was replaced.
       logical :: with_change = .false.            !< Whether `change` is wanted.
       real(wp) :: change(MAX_DOF) = 0.0_wp       !< Displacements: what the step changes of r, inertia counted whole.
-      type(report_t) :: bad                      !< Of the material, where a point failed.
-      integer :: bad_point = 0                   !< Its number, 0: none.
+      type(report_t) :: bad                      !< Report of the material where a point failed.
+      integer :: bad_point = 0                   !< Number of that point, 0: none.
       integer :: rate_evaluations = 0
       real(wp) :: seconds = 0.0_wp               !< In the material.
    end type element_t
@@ -52,7 +53,7 @@ contains
    !> Unknowns of an element.
    pure integer function element_size(domain, element)
       type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element   !< Its number.
+      integer, intent(in) :: element   !< Number of the element.
 
       element_size = LAST_U
       if (domain%n_carriers(element) == 0) return
@@ -71,7 +72,7 @@ contains
       type(state_t), intent(in) :: old
       type(state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
-      type(slopes_t), intent(inout) :: slopes   !< Those of its points are read or written.
+      type(slopes_t), intent(inout) :: slopes   !< Slopes of all points; those of the element are read or written.
       type(element_t), intent(inout) :: out
       type(response_t) :: material
       type(kinematics_t) :: k(MOST_POINTS)
@@ -161,13 +162,13 @@ contains
       end subroutine ask
    end subroutine update_points
 
-   !> What the nodes say about the points of an element.
+   !> Evaluates strains, pressures and their rates at the points of an element from the values at its nodes.
    subroutine look_at_nodes(domain, element, scheme, old, new, k)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
       type(state_t), intent(in) :: old, new
-      type(kinematics_t), intent(inout) :: k(:)   !< As many as points, or more.
+      type(kinematics_t), intent(inout) :: k(:)   !< Kinematics of the points, as many as the element has or more.
       type(nodes_t) :: nodes
       real(wp) :: gravity
       integer :: g, n_p
@@ -190,7 +191,7 @@ contains
       end do
    end subroutine look_at_nodes
 
-   !> What the nodes of an element carry; in an undrained element its center the pressures.
+   !> Gathers the values at the nodes of an element; in an undrained element its center carries the pressures.
    pure subroutine gather(domain, element, scheme, old, new, nodes)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
@@ -315,7 +316,7 @@ contains
       end do
    end subroutine add_flight_scale
 
-   !> What a step changes of the total stress and of the weight at a point; inertia, sources and damping count whole.
+   !> Change of the total stress and of the weight at a point in a step; inertia, sources and damping count whole.
    pure function change_of(domain, region, k, gravity0, stress0, e0, s0, response) result(change)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
@@ -333,11 +334,11 @@ contains
       change(U + 2) = change(U + 2) - mixture_density(domain, region, e0/(1 + e0), s0)*gravity0
    end function change_of
 
-   !> What the nodes say about a point.
+   !> Evaluates strain, pressures and their rates at a point from the values at the nodes.
    pure subroutine look(gp, with_w, with_c, scheme, nodes, k)
       type(gauss_t), intent(in) :: gp
       logical, intent(in) :: with_w   !< Whether nodes carry pressures.
-      logical, intent(in) :: with_c   !< Else the suction of the carriers is 0, and nothing is spent on it.
+      logical, intent(in) :: with_c   !< Whether the carriers have a suction; else it is 0, and nothing is spent on it.
       type(scheme_t), intent(in) :: scheme
       type(nodes_t), intent(in) :: nodes
       type(kinematics_t), intent(inout) :: k

@@ -14,21 +14,21 @@ module element_sums
    integer, parameter :: FORCES = U + 2   !< Places of stress and force, before those of the fluids.
    integer, parameter :: LAST_U = 2*NODES
 
-   !> What the points add up to.
+   !> Sums of the points of an element.
    type :: sums_t
       real(wp) :: r(NODES, 4)             !< Residual.
-      real(wp) :: k(NODES, 4, NODES, 4)   !< Its slopes: node and field of the row, node and field of the column.
+      real(wp) :: k(NODES, 4, NODES, 4)   !< Slopes of r: node and field of the row, node and field of the column.
    end type sums_t
 
    !> Rows of B at a point, times its weight [m3, m2].
    type :: rows_t
-      real(wp), dimension(NODES) :: n, d_r, d_z, hoop   !< Of the displacements; hoop: n/r.
-      real(wp), dimension(NODES) :: m, dm_r, dm_z       !< Of the pressures.
+      real(wp), dimension(NODES) :: n, d_r, d_z, hoop   !< Rows of the displacements; hoop: n/r.
+      real(wp), dimension(NODES) :: m, dm_r, dm_z       !< Rows of the pressures.
    end type rows_t
 contains
    !> Sums of no point yet.
    pure subroutine clear_sums(with_tangent, sums)
-      logical, intent(in) :: with_tangent   !< Else the matrix stays as it is.
+      logical, intent(in) :: with_tangent   !< Whether the matrix is cleared too; else it stays as it is.
       type(sums_t), intent(inout) :: sums
 
       sums%r = 0.0_wp
@@ -51,7 +51,7 @@ contains
    !> r = r + weight B^T response. Units of response: those of point_response.
    pure subroutine add_response(b, fields, response, r)
       type(rows_t), intent(in) :: b
-      integer, intent(in) :: fields           !< Of the element: 2, 3 or 4.
+      integer, intent(in) :: fields           !< Number of fields of the element: 2, 3 or 4.
       real(wp), intent(in) :: response(PLACES)
       real(wp), intent(inout) :: r(NODES, 4)
 

@@ -19,11 +19,11 @@ module equation_assembly
    public :: assembly_t, make_assembly, assemble, follow_slopes_first
 
    type :: assembly_t
-      real(wp), allocatable :: r(:, :)               !< Of every element.
-      real(wp), allocatable :: k(:)                  !< Its matrices, one behind the other, see pattern_t.
+      real(wp), allocatable :: r(:, :)               !< Residuals of the elements.
+      real(wp), allocatable :: k(:)                  !< Matrices of the elements, one behind the other, see pattern_t.
       real(wp), allocatable :: stretch(:, :)         !< See element_t.
-      real(wp), allocatable :: floor(:)              !< Its sum: what a volume balance is small against.
-      real(wp) :: unresolved = 0.0_wp                !< Of which the tolerance is what rounding leaves of ties [kN].
+      real(wp), allocatable :: floor(:)              !< Assembled floor: what a volume balance is small against.
+      real(wp) :: unresolved = 0.0_wp   !< Force of which the tolerance is what rounding leaves of ties [kN].
       logical :: with_change = .false.               !< Whether a step is measured against what it changes.
       real(wp) :: rounding_share = 0.0_wp            !< Then what changes counts as at least this share of all forces.
       real(wp), allocatable :: d_r(:, :)             !< With it: change of every element's r, see element_t.
@@ -31,9 +31,9 @@ module equation_assembly
       real(wp), allocatable :: residual(:)
       real(wp), allocatable :: scale(:)              !< Sum of the magnitudes of the elements' contributions.
       real(wp), allocatable :: values(:)             !< The matrix, in the order of the pattern.
-      integer :: source = BY_MATERIAL                !< What gives the response of the points in the next pass.
+      integer :: source = BY_MATERIAL                !< Source of the response of the points in the next pass.
       type(slopes_t) :: slopes                       !< Slopes that are kept between passes.
-      integer :: fallback = NO_FALLBACK              !< What replaces soft tangents, see tangent_fallback.
+      integer :: fallback = NO_FALLBACK              !< Kind of replacement of soft tangents, see tangent_fallback.
       integer :: replaced = 0                        !< Points whose tangent was replaced in the last matrix.
       integer, allocatable :: soft(:)                !< Such points of every element.
       logical, allocatable :: air(:)                 !< Nodes whose air pressure is prescribed.
@@ -61,8 +61,8 @@ contains
       assembly%slopes = new_slopes(size(domain%mesh%t6, 2)*domain%rule)
    end subroutine make_assembly
 
-   !> Before the first pass of a step: whether it follows the slopes of the step before, where they are known. From
-   !> here on the slopes are those of this step's passes. docs/theory/host.md section 5.4.
+   !> Decides before the first pass of a step whether it follows the slopes of the step before, where they are known.
+   !> From here on the slopes are those of this step's passes. docs/theory/host.md section 5.4.
    pure subroutine follow_slopes_first(assembly)
       type(assembly_t), intent(inout) :: assembly
 
@@ -155,8 +155,8 @@ contains
       end subroutine leave_out
    end subroutine assemble
 
-   !> Where the air pressure is prescribed the flow of air is unknown, so that the sum of the balances is replaced by
-   !> its difference from that of the air: the balance of water.
+   !> Replaces the sum of the balances by its difference from that of the air, the balance of water, where the air
+   !> pressure is prescribed and the flow of air unknown.
    pure subroutine balance_of_water(domain, air, e, m, with_tangent, out)
       type(domain_t), intent(in) :: domain
       logical, intent(in) :: air(:)
@@ -175,7 +175,8 @@ contains
       end do
    end subroutine balance_of_water
 
-   !> What the step changes of the forces on every displacement. A balance of volume is made of rates: all of it counts.
+   !> Adds up the changes of the forces on every displacement in the step. A balance of volume is made of rates: all of
+   !> it counts.
    subroutine add_up_change(dofs, pattern, assembly)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern

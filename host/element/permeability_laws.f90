@@ -23,13 +23,13 @@ module permeability_laws
       real(wp) :: intrinsic = 0.0_wp               !< k [m2]
       real(wp) :: s_min = 0.0_wp, s_max = 1.0_wp   !< S_e = (S_w - s_min)/(s_max - s_min)
       real(wp) :: a = 0.0_wp, b = 3.0_wp, c = 2.0_wp, m = 0.5_wp
-      real(wp) :: k_rw = 1.0_wp, k_ra = 1.0_wp     !< Of LAW_CONSTANT.
+      real(wp) :: k_rw = 1.0_wp, k_ra = 1.0_wp     !< Relative permeabilities of LAW_CONSTANT.
       real(wp) :: floor = 1.0e-4_wp
    end type permeability_t
 
    type :: relative_t
       real(wp) :: w, a     !< k_rw, k_ra [-]
-      real(wp) :: dw, da   !< Their slopes against S_w [-].
+      real(wp) :: dw, da   !< Slopes of k_rw, k_ra against S_w [-].
    end type relative_t
 contains
    !> Relative permeabilities of water and air [-] and their slopes at a degree of saturation [-]. docs/theory/host.md

@@ -22,7 +22,7 @@ module porous_balance
    integer, parameter :: PW = 7, PC = 8   !< Water pressure, suction.
    integer, parameter :: GW = 8, GA = 10  !< Gradients of p_w at GW + 1, GW + 2, of p_c at GA + 1, GA + 2.
 
-   !> What the nodes say about a point.
+   !> Strain, pressures, their gradients and rates at a point, from the nodes.
    type :: kinematics_t
       real(wp) :: strain(4)                     !< Increment of the step.
       real(wp) :: accel(2)                      !< At its level [m/s2].
@@ -31,7 +31,7 @@ module porous_balance
       real(wp) :: velocity(2)                   !< Before, in dynamic stages [m/s].
       real(wp) :: div_v                         !< Rate of volume at its level [1/s].
       real(wp) :: w0, w1, c0, c1                !< p_w, p_c before and after [kPa].
-      real(wp) :: w_dot, c_dot                  !< Their rates at their level [kPa/s].
+      real(wp) :: w_dot, c_dot                  !< Rates of the pressures at their level [kPa/s].
       real(wp) :: grad_w(2), grad_c(2)          !< Gradients at the level of values [kPa/m].
       real(wp) :: source(4)
    end type kinematics_t
@@ -41,7 +41,7 @@ module porous_balance
       real(wp) :: e, s, s_rate
    end type pore_t
 
-   !> What the material says about the end of the step; slopes where they are asked for.
+   !> Response of the material at the end of the step; slopes where they are asked for.
    type :: skeleton_t
       real(wp) :: stress(4)              !< Effective stress [kPa]
       real(wp) :: e, s                   !< Void ratio, degree of saturation [-]
@@ -59,7 +59,7 @@ module porous_balance
       ! where there is air:
       real(wp) :: p_c                !< [kPa]
       real(wp) :: s_dot              !< Rate of the degree of saturation [1/s]
-      real(wp) :: rate_ev, rate_pc   !< Its slopes, over that of the scheme.
+      real(wp) :: rate_ev, rate_pc   !< Slopes of s_dot, over that of the scheme.
       real(wp) :: k_a, d_k_a         !< Bulk modulus of the air [kPa] and its slope against p_a [-]
       real(wp) :: rho_a, d_rho_a     !< Density of the air [t/m3] and its slope against p_a.
       type(relative_t) :: rel        !< Relative permeabilities, where fluids flow.
@@ -81,7 +81,7 @@ contains
       type(pore_t), intent(out) :: new
       logical, intent(in) :: with_tangent
       real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)   !< The tangent where it is asked for.
-      real(wp), intent(out) :: drift(2)      !< What the fluxes are made of, by magnitude [m/s].
+      real(wp), intent(out) :: drift(2)      !< Magnitudes of the parts of both fluxes [m/s].
       type(mixture_t) :: mix
 
       call fill_pores(domain, region, scheme, k, skeleton, old, new, mix)
@@ -97,7 +97,7 @@ contains
       response(PW) = response(PW) - k%source(3)
    end subroutine point_response
 
-   !> The same of a point of a region without water, where nothing is spent on the places of the fluids.
+   !> Response of a point of a region without water, where nothing is spent on the places of the fluids.
    !> docs/theory/host.md sections 2 and 3.3.
    pure subroutine solid_response(region, scheme, k, stress0, skeleton, e_old, with_tangent, response, tangent)
       type(region_t), intent(in) :: region
@@ -107,7 +107,7 @@ contains
       type(skeleton_t), intent(in) :: skeleton
       real(wp), intent(in) :: e_old          !< Void ratio before the step [-].
       logical, intent(in) :: with_tangent
-      real(wp), intent(out) :: response(PLACES)              !< As of point_response.
+      real(wp), intent(out) :: response(PLACES)              !< Response, as of point_response.
       real(wp), intent(inout) :: tangent(PLACES, PLACES)     !< Written at stress and force, where it is asked for.
       real(wp) :: n, n1, rho, accel(2), l_s
       integer :: i
@@ -175,7 +175,7 @@ contains
       if (region%with_c) call fill_with_air(domain, region, scheme, k, skeleton, old, new, mix)
    end subroutine fill_pores
 
-   !> How much of the pores is water, and the air in the rest.
+   !> Sets the share of the pores that is water, and the air in the rest.
    subroutine fill_with_air(domain, region, scheme, k, skeleton, old, new, mix)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
@@ -350,7 +350,7 @@ contains
       end associate
    end subroutine add_air
 
-   !> What drives seepage besides the gradient: weight, and inertia if the scene wants it [m/s2].
+   !> Acceleration that drives seepage beside the gradient: weight, and inertia if the scene wants it [m/s2].
    pure function body_force(domain, k) result(b)
       type(domain_t), intent(in) :: domain
       type(kinematics_t), intent(in) :: k

@@ -16,8 +16,9 @@ module porous_domain
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
              take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state, &
              exchange_state
-   public :: COUPLED, DRAINED, UNDRAINED, DRY
+   public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
+   integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.
    ! What the fluids in the pores of a region do, in the order of the words of &region drainage.
    integer, parameter :: COUPLED = 1     !< Pressures are unknowns of the nodes, fluids flow.
    integer, parameter :: DRAINED = 2     !< Pressures stay as they are given at the start.
@@ -27,16 +28,16 @@ module porous_domain
    !> Pore fluids.
    type :: fluids_t
       real(wp) :: k_w = 2.2e6_wp, rho_w = 1.0_wp, eta_w = 1.0e-6_wp        !< [kPa, Mg/m3, kPa s]
-      real(wp) :: k_a = 101.325_wp, rho_a = 1.2e-3_wp, eta_a = 1.8e-8_wp   !< The same of air.
+      real(wp) :: k_a = 101.325_wp, rho_a = 1.2e-3_wp, eta_a = 1.8e-8_wp   !< Properties of air [kPa, Mg/m3, kPa s]
       logical :: ideal_gas = .false.    !< K_a = absolute pressure, rho_a in proportion to it.
       real(wp) :: p_ref = 101.325_wp    !< Absolute pressure where p_a = 0 [kPa].
       real(wp) :: henry = 0.0_wp        !< Volume of air that a volume of water dissolves, at its pressure [-].
    end type fluids_t
 
-   !> What a region is made of.
+   !> Material, fluids and damping of a region.
    type :: region_t
       class(material_t), allocatable :: law   !< Skeleton and retention: stress, void ratio, degree of saturation.
-      real(wp) :: stress_tolerance = 0.0_wp   !< Of its stress integration as the scene has it [-].
+      real(wp) :: stress_tolerance = 0.0_wp   !< Tolerance of its stress integration as the scene has it [-].
       integer :: permeability = 0       !< Place in the list, 0: none.
       real(wp) :: rho_s = 0.0_wp        !< Density of the grains [Mg/m3]
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
@@ -51,8 +52,8 @@ module porous_domain
    type :: gauss_t
       real(wp) :: x(2)
       real(wp) :: weight            !< Volume: 2 pi r dA, or dA [m3]
-      real(wp) :: n(6), dn(6, 2)    !< Of the displacements.
-      real(wp) :: m(6), dm(6, 2)    !< Of the pressures.
+      real(wp) :: n(6), dn(6, 2)    !< Shape functions of the displacements.
+      real(wp) :: m(6), dm(6, 2)    !< Shape functions of the pressures.
       real(wp) :: n_over_r(6)       !< Hoop strain; 0 in plane strain.
    end type gauss_t
 
@@ -78,7 +79,7 @@ module porous_domain
       type(fluids_t) :: fluids
       type(permeability_t), allocatable :: permeabilities(:)
       type(region_t), allocatable :: regions(:)
-      integer, allocatable :: region_of(:)            !< Of every element.
+      integer, allocatable :: region_of(:)            !< Regions of the elements.
       ! Where the pressures of an element are: the first n_carriers of its carriers, with the shape functions m.
       integer, allocatable :: n_carriers(:)           !< n_p where coupled with water, 1 where undrained, else 0.
       integer, allocatable :: carriers(:, :)          !< (6, elements) Nodes.
@@ -90,7 +91,7 @@ module porous_domain
       type(gauss_t), allocatable :: gauss(:, :)       !< (rule, elements)
       integer :: threads = 1
       integer, allocatable :: bodies(:)               !< Nodes of rigid plates: the last ones, in no element, with u_z.
-      integer, allocatable :: bodies_along_r(:)       !< Those of them that have u_r as well.
+      integer, allocatable :: bodies_along_r(:)       !< Nodes of rigid plates that have u_r as well.
       procedure(source_i), pointer, nopass :: source => null()
    end type domain_t
 
@@ -99,18 +100,20 @@ module porous_domain
       real(wp) :: time = 0.0_wp
       real(wp) :: gravity = 0.0_wp            !< At this time, towards -z [m/s2].
       real(wp), allocatable :: x(:, :)        !< (FIELDS, nodes) unknowns
-      real(wp), allocatable :: v(:, :)        !< their rates
+      real(wp), allocatable :: v(:, :)        !< rates of the unknowns
       real(wp), allocatable :: a(:, :)        !< (2, nodes) accelerations
       real(wp), allocatable :: stress(:, :)   !< (6, points) effective, tension positive [kPa]
       real(wp), allocatable :: state(:)       !< State variables, element by element, see before_state.
       real(wp), allocatable :: e(:)           !< void ratio
       real(wp), allocatable :: s(:)           !< degree of saturation
-      real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
+      !> Rate of the degree of saturation (points) [1/s]; after it what flows out through prescribed pressures and
+      !> seepage faces, less the rain: both fluids, air [m3/s]. It follows the scheme as the storage of points does.
+      real(wp), allocatable :: s_rate(:)
       ! Where parts of the ground join or leave, else not allocated. docs/theory/host.md section 14.
       logical, allocatable :: present(:)      !< Parts of the ground in this stage. (elements)
-      logical, allocatable :: joins(:)        !< Those that join with it. (elements)
+      logical, allocatable :: joins(:)        !< Parts that join with this stage. (elements)
       real(wp) :: growth = 1.0_wp             !< Share of their weight that acts on those that join, at this time [-].
-      !> Laws of the regions in the step that ends with this state, where strength changes with time, else not
+      !> Laws of the regions in the step that ends with this state, where laws change with time, else not
       !> allocated: made for every step, docs/theory/host.md section 15. (regions)
       type(material_slot_t), allocatable :: laws(:)
    end type state_t
@@ -178,7 +181,8 @@ contains
       end do
    end subroutine prepare_domain
 
-   !> Which nodes carry the pressures of every element. The centers of undrained elements must be nodes already.
+   !> Finds the nodes that carry the pressures of every element. The centers of undrained elements must be nodes
+   !> already.
    subroutine place_pressures(domain)
       type(domain_t), intent(inout) :: domain
       integer :: e
@@ -214,8 +218,8 @@ contains
          p = p + given_pressures_at(domain, element, point)
    end function pressures_at
 
-   !> What is given of p_w and p_c at a point: all of it where drained, in undrained elements what differs from their
-   !> mean, else nothing [kPa]. docs/theory/host.md section 3.5.
+   !> Part of p_w and p_c at a point that is given: all of it where drained, in undrained elements what differs from
+   !> their mean, else nothing [kPa]. docs/theory/host.md section 3.5.
    pure function given_pressures_at(domain, element, point) result(p)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element, point   !< Numbers; the point within its element.
@@ -247,7 +251,7 @@ contains
       allocate (state%state(domain%before_state(size(domain%before_state))), source=0.0_wp)
       allocate (state%e(points), source=0.0_wp)
       allocate (state%s(points), source=1.0_wp)
-      allocate (state%s_rate(points), source=0.0_wp)
+      allocate (state%s_rate(points + OUTFLOWS), source=0.0_wp)
       do e = 1, size(domain%mesh%t6, 2)
          state%e((e - 1)*domain%rule + 1:e*domain%rule) = domain%regions(domain%region_of(e))%void_ratio
       end do
@@ -373,6 +377,6 @@ contains
       state%state = reshape(table, [size(table)])
       call archive%exchange('e', state%e, '-', 'void ratio')
       call archive%exchange('s', state%s, '-', 'degree of saturation')
-      call archive%exchange('s_rate', state%s_rate, '1/s', 'its rate')
+      call archive%exchange('s_rate', state%s_rate, '1/s, m3/s', 'its rate; the flows out, of both fluids and of air')
    end subroutine exchange_state
 end module porous_domain

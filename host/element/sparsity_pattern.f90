@@ -14,7 +14,8 @@ module sparsity_pattern
       integer, allocatable :: source(:)   !< Place in the square matrices of the elements, one behind the other, from 1
       integer, allocatable :: place(:)    !< The other way round: the entry to which every place adds
       integer, allocatable :: before(:)   !< (elements + 1) Entries of these before those of an element.
-      integer, allocatable :: r_first(:), r_source(:)   !< The same for the vector r(m, elements).
+      integer, allocatable :: r_first(:), r_source(:)   !< Places in r(m, elements) that the entries of the vector are
+                                                        !< summed from.
    end type pattern_t
 contains
    !> Pattern of elements given by their unknowns; `extra`: further pairs of unknowns that meet (contact).
@@ -110,7 +111,7 @@ contains
       call move_alloc(list, pattern%r_source)
    end subroutine make_pattern
 
-   !> For every unknown, the places (in array order) where it occurs.
+   !> Lists for every unknown the places (in array order) where it occurs.
    pure subroutine invert(n, element, start, list)
       integer, intent(in) :: n, element(:, :)
       integer, allocatable, intent(out) :: start(:), list(:)

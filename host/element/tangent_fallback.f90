@@ -24,7 +24,7 @@ contains
       real(wp), intent(in) :: state(:, :)          !< (n_state or more, n) after the increment
       real(wp), intent(in) :: suction(:)           !< (n) after it [kPa]
       type(response_t), intent(inout) :: response
-      integer, intent(out) :: replaced   !< How many.
+      integer, intent(out) :: replaced   !< Number of tangents that were replaced.
       real(wp) :: elastic(6, 6)
       integer :: g
 

@@ -38,7 +38,7 @@ module gmsh_reader
    type :: reader_t
       character(:), allocatable :: file
       integer :: unit = 0, line = 0
-      integer :: bytes = 0   !< Of the file: what it announces beyond is not there.
+      integer :: bytes = 0   !< Size of the file: what it announces beyond is not there.
       character(LONGEST) :: text = ''
    end type reader_t
 contains

@@ -10,5 +10,5 @@ module unknown_fields
    integer, parameter :: AT_U_R = 1, AT_U_Z = 2   !< Displacements [m]
    integer, parameter :: AT_P_W = 3            !< Pore water pressure [kPa]
    integer, parameter :: AT_P_C = 4            !< Suction [kPa]
-   integer, parameter :: DISPLACEMENTS = 2  !< How many of the fields are displacements; they come first.
+   integer, parameter :: DISPLACEMENTS = 2  !< Number of fields that are displacements; they come first.
 end module unknown_fields

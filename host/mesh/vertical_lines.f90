@@ -7,12 +7,12 @@ module vertical_lines
    private
    public :: strips_t, new_strips, pieces_above
 
-   real(wp), parameter :: ROUNDED = 1.0e-12_wp   !< Of the length of a line.
+   real(wp), parameter :: ROUNDED = 1.0e-12_wp   !< Share of the length of a line that is rounding.
 
    !> Triangles of a mesh by vertical strips of one width, so that a line looks at few of them.
    type :: strips_t
       real(wp) :: left = 0.0_wp, width = 1.0_wp   !< [m]
-      integer, allocatable :: first(:)            !< Of a strip in `elements`; one more than there are strips.
+      integer, allocatable :: first(:)   !< First entry of a strip in `elements`; one more than there are strips.
       integer, allocatable :: elements(:)
    end type strips_t
 contains

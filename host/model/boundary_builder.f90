@@ -4,10 +4,10 @@ module boundary_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
-   use model_types, only: model_t, gravity_at
+   use model_types, only: model_t, action_t, gravity_at
    use name_search, only: mesh_group, defined_name
-   use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, acts_in, place_of, &
-                          LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
+   use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, tie_t, acts_in, place_of, &
+                          LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
    use texts, only: short, whole
    use triangle_mesh, only: find_group, add_group
    use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C
@@ -143,7 +143,7 @@ contains
                                  'motion = ''plane'', and '''//trim(name)//''' is none.')
    end function turning_plate
 
-   !> Initial conditions, supports, loads, contacts, absorbing boundaries and ties of a scene; a fault names what cannot
+   !> Initial conditions, supports, loads, contacts and ties of a scene; a fault names what cannot
    !> be resolved. Fault EXIT_GROUP: a group or history does not exist, or a group lacks the edges or nodes that are
    !> needed. Fault EXIT_INPUT: a field that the scene lacks, or keys that contradict each other.
    subroutine build_boundaries(model, fault)
@@ -165,13 +165,47 @@ contains
       do i = 1, size(model%contacts)
          if (fault%code == 0) call build_contact(model, model%contacts(i), fault)
       end do
-      do i = 1, size(model%absorbers)
-         if (fault%code == 0) call build_absorber(model, model%absorbers(i), fault)
-      end do
       do i = 1, size(model%ties)
          if (fault%code == 0) call build_tie(model, model%ties(i), fault)
       end do
+      call list_actions(model)
    end subroutine build_boundaries
+
+   !> What acts on groups of the mesh, for those who ask no more of it; terms add theirs.
+   subroutine list_actions(model)
+      type(model_t), intent(inout) :: model
+      type(action_t) :: plate
+      integer :: i
+
+      allocate (model%actions(0))
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            model%actions = [model%actions, action_t(one%file, one%line, '&load', one%group, one%amplitude, &
+               one%stages, along_normal=any(one%kind == [LOAD_PRESSURE, LOAD_RAIN]), bears=one%kind == LOAD_PRESSURE)]
+         end associate
+      end do
+      do i = 1, size(model%fixes)
+         associate (one => model%fixes(i))
+            model%actions = [model%actions, action_t(one%file, one%line, '&fix', one%group, &
+               merge(0, one%amplitude, one%hold), one%stages, one%from, supports=.true.)]
+         end associate
+      end do
+      do i = 1, size(model%contacts)
+         associate (one => model%contacts(i))
+            model%actions = [model%actions, action_t(one%file, one%line, '&contact', one%slave, 0, one%stages, &
+                                                     along_normal=.true., bears=.true.)]
+            if (one%plate == 0) model%actions = [model%actions, action_t(one%file, one%line, '&contact', one%master, &
+                                                                         0, one%stages, along_normal=.true.)]
+         end associate
+      end do
+      do i = 1, size(model%plates)
+         associate (one => model%plates(i))
+            plate = action_t(one%file, one%line, '&plate', one%group, one%amplitude, bears=.true.)
+            allocate (plate%stages(0))
+            model%actions = [model%actions, plate]
+         end associate
+      end do
+   end subroutine list_actions
 
    !> Place of an amplitude, 0 where none is named.
    integer function amplitude_of(name, place, model, fault) result(amplitude)
@@ -315,18 +349,6 @@ contains
       if (contact%drains_by_state .and. .not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(contact)// &
          'drainage = ''state'' needs pressures; see fields in &scene.')
    end subroutine build_contact
-
-   subroutine build_absorber(model, absorber, fault)
-      type(model_t), intent(in) :: model
-      type(absorber_t), intent(inout) :: absorber
-      type(fault_t), intent(inout) :: fault
-
-      absorber%group = mesh_group(model%domain%mesh, absorber%group_name, place_of(absorber), fault)
-      if (fault%code == 0) absorber%amplitude = amplitude_of(absorber%amplitude_name, place_of(absorber), model, fault)
-      if (fault%code /= 0) return
-      if (size(model%domain%mesh%groups(absorber%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
-         place_of(absorber)//'group '''//trim(absorber%group_name)//''' has no edges that waves could leave through.')
-   end subroutine build_absorber
 
    !> Pairs of nodes at equal heights.
    subroutine build_tie(model, tie, fault)

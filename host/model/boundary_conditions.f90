@@ -13,7 +13,7 @@ module boundary_conditions
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: new_constraint, constrain_step, follow_accelerations, starting_accelerations, &
+   public :: new_constraint, constrain_step, complete_constraint, follow_accelerations, starting_accelerations, &
              prescribing_fixes, forces_of_supports
 
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
@@ -51,15 +51,14 @@ contains
       end do
    end function new_constraint
 
-   !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at; x: at
-   !> the start of the step, where pressures with a limit begin on one of its sides.
+   !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
    !> docs/theory/host.md sections 3.5, 7.1 and 7.7. Accelerations: see follow_accelerations.
-   subroutine constrain_step(model, stage, dofs, drainage, time, x_start, x, constraint)
+   subroutine constrain_step(model, stage, dofs, drainage, time, x_start, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
       type(drainage_t), intent(in) :: drainage
-      real(wp), intent(in) :: time, x_start(:, :), x(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa], twice.
+      real(wp), intent(in) :: time, x_start(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa].
       type(constraint_t), intent(inout) :: constraint
       real(wp) :: value, factor
       integer :: i, k, node, at
@@ -101,6 +100,17 @@ contains
          end associate
       end do
       if (stage%kind /= STATIC) call limit_pressures(model, stage, dofs, drainage, time, constraint)
+   end subroutine constrain_step
+
+   !> What follows from the prescribed values of supports and terms. Pressures with a limit begin on that side of it on
+   !> which they stand at the start of the step.
+   subroutine complete_constraint(stage, dofs, x_start, x, constraint)
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: x_start(:, :), x(:, :)   !< (FIELDS, nodes) At the starts of stage and step [m, kPa].
+      type(constraint_t), intent(inout) :: constraint
+      integer :: i, node
+
       ! Air pressure and one of the others: then the third is known too.
       do node = 1, size(constraint%air)
          if (.not. constraint%air(node)) cycle
@@ -124,7 +134,7 @@ contains
          constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
       end do
       constraint%air = .false.
-   end subroutine constrain_step
+   end subroutine complete_constraint
 
    !> Value of a &fix at a height z, its history the factor.
    pure real(wp) function value_of(fix, z, factor) result(value)

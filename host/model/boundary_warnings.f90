@@ -3,9 +3,9 @@
 module boundary_warnings
    use kinds, only: wp
    use given_pressures, only: nodes_with_flow, edges_with_flow
-   use idle_keys, only: add_warning, WARNING_LENGTH
-   use model_types, only: model_t
-   use scene_types, only: scene_item_t, acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, &
+   use warnings, only: add_warning, WARNING_LENGTH
+   use model_types, only: model_t, action_t
+   use scene_types, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, &
                           fix_t, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
@@ -172,22 +172,9 @@ contains
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       integer :: i
 
-      do i = 1, size(model%loads)
-         associate (one => model%loads(i))
-            call look(one%scene_item_t, one%amplitude, first_time(one%stages))
-         end associate
-      end do
-      do i = 1, size(model%fixes)
-         associate (one => model%fixes(i))
-            if (.not. one%hold) call look(one%scene_item_t, one%amplitude, max(one%from, first_time(one%stages)))
-         end associate
-      end do
-      do i = 1, size(model%plates)
-         call look(model%plates(i)%scene_item_t, model%plates(i)%amplitude, 0.0_wp)
-      end do
-      do i = 1, size(model%absorbers)
-         associate (one => model%absorbers(i))
-            call look(one%scene_item_t, one%amplitude, first_time(one%stages))
+      do i = 1, size(model%actions)
+         associate (one => model%actions(i))
+            call look(one, max(one%from, first_time(one%stages)))
          end associate
       end do
    contains
@@ -203,14 +190,13 @@ contains
          end do
       end function first_time
 
-      subroutine look(item, amplitude, start)
-         type(scene_item_t), intent(in) :: item
-         integer, intent(in) :: amplitude
+      subroutine look(item, start)
+         type(action_t), intent(in) :: item
          real(wp), intent(in) :: start   !< When it begins to act [s].
          real(wp) :: factor
 
-         if (amplitude == 0) return
-         associate (h => model%amplitudes(amplitude))
+         if (item%amplitude == 0) return
+         associate (h => model%amplitudes(item%amplitude))
             if (size(h%stages) > 0) return
             factor = amplitude_at(h, start)
             if (.not. any(h%times < start .and. &

@@ -14,7 +14,6 @@ module initial_conditions
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    use scene_types, only: initial_t
-   use staged_ground, only: is_staged, ground_of
    use vertical_lines, only: strips_t, new_strips, pieces_above
    implicit none (type, external)
    private
@@ -70,8 +69,8 @@ contains
       if (present(tension)) allocate (tension%uses(size(model%domain%regions)))
       state = new_state_of(model%domain)
       state%gravity = gravity_at(model, state%time)
-      if (is_staged(model)) then
-         state%present = ground_of(model, 1)
+      if (allocated(model%ground)) then
+         state%present = model%ground(:, 1)
          state%joins = spread(.false., 1, size(state%present))
       end if
       do i = 1, size(model%initials)

@@ -4,9 +4,9 @@ module mesh_look
    use kinds, only: wp
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
-   use idle_keys, only: add_warning, WARNING_LENGTH
-   use model_types, only: model_t
-   use scene_types, only: place_of, scene_item_t
+   use warnings, only: add_warning, WARNING_LENGTH
+   use model_types, only: model_t, action_t
+   use scene_types, only: place_of
    use texts, only: short, whole
    implicit none (type, external)
    private
@@ -14,8 +14,7 @@ module mesh_look
 
    real(wp), parameter :: SAME_PLACE = 1.0e-6_wp   !< Share of the extent of the mesh.
 contains
-   !> Fault EXIT_GROUP: a load acts on a node of no element, or a support, contact or absorbing boundary on such nodes
-   !> alone.
+   !> Fault EXIT_GROUP: something acts on a node of no element, or a support on such nodes alone.
    subroutine check_carried(model, fault)
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
@@ -29,33 +28,23 @@ contains
       do e = 1, size(model%domain%bodies)
          carried(model%domain%bodies(e)) = .true.
       end do
-      do i = 1, size(model%loads)
-         call look(model%loads(i)%scene_item_t, model%loads(i)%group, 1)
-      end do
-      do i = 1, size(model%fixes)
-         call look(model%fixes(i)%scene_item_t, model%fixes(i)%group, 0)
-      end do
-      do i = 1, size(model%contacts)
-         call look(model%contacts(i)%scene_item_t, model%contacts(i)%slave, 1)
-         if (model%contacts(i)%plate == 0) call look(model%contacts(i)%scene_item_t, model%contacts(i)%master, 1)
-      end do
-      do i = 1, size(model%absorbers)
-         call look(model%absorbers(i)%scene_item_t, model%absorbers(i)%group, 1)
+      do i = 1, size(model%actions)
+         if (model%actions(i)%group > 0) call look(model%actions(i))
       end do
    contains
-      subroutine look(item, group, all_of_them)
-         class(scene_item_t), intent(in) :: item
-         integer, intent(in) :: group, all_of_them   !< 1: every node has to be carried, else one.
+      subroutine look(item)
+         type(action_t), intent(in) :: item
          integer :: k
 
          if (fault%code /= 0) return
-         associate (mesh => model%domain%mesh, nodes => model%domain%mesh%groups(group)%nodes)
-            if (all(carried(nodes)) .or. (all_of_them == 0 .and. any(carried(nodes)))) return
+         associate (mesh => model%domain%mesh, nodes => model%domain%mesh%groups(item%group)%nodes)
+            if (all(carried(nodes)) .or. (item%supports .and. any(carried(nodes)))) return
             k = nodes(findloc(carried(nodes), .false., dim=1))
             call raise(fault, EXIT_GROUP, place_of(item)//whole(count(.not. carried(nodes)))//' of the '// &
-                       whole(size(nodes))//' nodes of group '''//trim(mesh%groups(group)%name)//''' belong to no '// &
-                       'element, the first at ('//short(mesh%x(1, k))//', '//short(mesh%x(2, k))//') m: nothing '// &
-                       'acts there; embed the point or curve in its surface in Gmsh, or name another group.')
+                       whole(size(nodes))//' nodes of group '''//trim(mesh%groups(item%group)%name)// &
+                       ''' belong to no element, the first at ('//short(mesh%x(1, k))//', '//short(mesh%x(2, k))// &
+                       ') m: nothing acts there; embed the point or curve in its surface in Gmsh, or name another '// &
+                       'group.')
          end associate
       end subroutine look
    end subroutine check_carried

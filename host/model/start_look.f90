@@ -6,7 +6,7 @@ module start_look
    use generalised_alpha, only: STATIC, DYNAMIC
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
-   use idle_keys, only: add_warning, WARNING_LENGTH
+   use warnings, only: add_warning, WARNING_LENGTH
    use initial_conditions, only: balance_t
    use model_types, only: model_t
    use scene_types, only: acts_in, amplitude_t, place_of, scene_item_t, fix_t, plate_t, LOAD_PRESSURE, LOAD_AIR, &
@@ -47,14 +47,16 @@ contains
       type(balance_t), intent(in) :: balance
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(:), allocatable :: share, why
+      integer :: i
 
       if (.not. balance%matters) return
       if (model%stages(1)%kind == STATIC .and. .not. any(model%initials%geostatic .or. model%initials%uniform)) return
       share = ', where there is no stress'
       if (balance%there > 0.0_wp) share = ', '//short(100*balance%stress/balance%there)//' % of the stress there'
       why = ''
-      if (model%stages(1)%kind == DYNAMIC .and. size(model%absorbers) > 0) why = ' The dashpots of &absorbing '// &
-         'hold no weight: find the balance in a static stage with a &fix that is limited to it.'
+      i = findloc(model%actions%damps, .true., dim=1)
+      if (model%stages(1)%kind == DYNAMIC .and. i > 0) why = ' The dashpots of '//trim(model%actions(i)%what)// &
+         ' hold no weight: find the balance in a static stage with a &fix that is limited to it.'
       call add_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
                        short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
                        '. Stage '//trim(model%stages(1)%name)//' begins with what they set free; compare rho_s, '// &
@@ -162,20 +164,11 @@ contains
                   carried(fix%field, groups(fix%group)%nodes) = .true.
             end associate
          end do
-         do i = 1, size(model%loads)
-            associate (load => model%loads(i))
-               if (load%kind == LOAD_PRESSURE .and. acts_in(load%stages, name)) &
-                  pressed(groups(load%group)%edges(3, :)) = .true.
+         do i = 1, size(model%actions)
+            associate (one => model%actions(i))
+               if (one%bears .and. one%group > 0 .and. acts_in(one%stages, name)) &
+                  pressed(groups(one%group)%nodes) = .true.
             end associate
-         end do
-         do i = 1, size(model%contacts)
-            if (acts_in(model%contacts(i)%stages, name)) pressed(groups(model%contacts(i)%slave)%nodes) = .true.
-         end do
-         do i = 1, size(model%absorbers)
-            if (acts_in(model%absorbers(i)%stages, name)) pressed(groups(model%absorbers(i)%group)%nodes) = .true.
-         end do
-         do i = 1, size(model%plates)
-            if (model%plates(i)%group > 0) pressed(groups(model%plates(i)%group)%nodes) = .true.
          end do
       end associate
    end subroutine find_carried

@@ -9,7 +9,8 @@ module energy_ledger
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, is_present, gravity_on, COUPLED
+   use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, is_present, gravity_on, &
+                            COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
@@ -59,7 +60,8 @@ contains
       real(wp), intent(in) :: reaction(:)        !< Residual with every row kept. (unknowns) [kN, m3/s]
       real(wp), intent(in) :: contact_force(:)   !< Mean forces of the contacts over the step, if there are any [kN].
                                                  !< (unknowns) or (0).
-      type(state_t), intent(in) :: old, new
+      type(state_t), intent(in) :: old
+      type(state_t), intent(inout) :: new        !< The flows out are set.
       !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
       real(wp), allocatable, intent(inout) :: damping_stress(:, :)
       type(ledger_t), intent(inout) :: ledger
@@ -90,7 +92,8 @@ contains
       ledger%gravity = ledger%gravity + work%gravity
       ledger%damping = ledger%damping + work%damping
       call book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
-      call book_outflow(dofs, scheme, constraint, reaction, ledger)
+      call book_outflow(dofs, scheme, constraint, reaction, old%s_rate(size(old%s) + 1:), &
+                        new%s_rate(size(new%s) + 1:), ledger)
       if (allocated(damping_stress)) call follow_damping(domain, scheme, old, new, damping_stress)
    end subroutine book_step
 
@@ -174,26 +177,33 @@ contains
       end do
    end subroutine book_forces
 
-   !> Flow out through prescribed pressures and past limits, less the rain: what runs off never entered.
-   subroutine book_outflow(dofs, scheme, constraint, reaction, ledger)
+   !> Flow out through prescribed pressures and past limits, less the rain: what runs off never entered. Its mean over
+   !> the step is that of the rate of what is stored, so that what has left is what is missing inside, whatever the
+   !> steps. docs/theory/host.md section 9.
+   subroutine book_outflow(dofs, scheme, constraint, reaction, before, after, ledger)
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
       real(wp), intent(in) :: reaction(:)
+      real(wp), intent(in) :: before(OUTFLOWS)   !< Flows of both fluids and of air as the scheme follows them [m3/s].
+      real(wp), intent(out) :: after(OUTFLOWS)
       type(ledger_t), intent(inout) :: ledger
+      real(wp) :: flow(OUTFLOWS), mean(OUTFLOWS)
       integer :: i
 
+      after = 0.0_wp
       if (scheme%kind == STATIC) return
-      ledger%outflow = ledger%outflow &
-         - scheme%dt*sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0))
+      flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
       do i = 1, dofs%n
-         if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
+         if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
          if (dofs%field(i) /= AT_P_C) cycle
-         if (constraint%fixed(i)) ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
-         if (.not. constraint%air(dofs%node(i))) cycle
-         ledger%outflow_air = ledger%outflow_air - scheme%dt*reaction(i)
-         ledger%outflow = ledger%outflow - scheme%dt*reaction(i)
+         if (constraint%fixed(i)) flow(2) = flow(2) - reaction(i)
+         if (constraint%air(dofs%node(i))) flow = flow - reaction(i)
       end do
+      after = before + (flow - before)/scheme%l_p
+      mean = before + scheme%gamma_1*(after - before)
+      ledger%outflow = ledger%outflow + scheme%dt*mean(1)
+      ledger%outflow_air = ledger%outflow_air + scheme%dt*mean(2)
    end subroutine book_outflow
 
    !> What moves an element as a step does, inertia included [kJ].

@@ -1,28 +1,31 @@
 ! SPDX-License-Identifier: MIT
-!> The start of a run: matrix pattern, initial state, contacts, absorbing boundaries, the flow that is to be subtracted.
+!> The start of a run: matrix pattern, initial state, contacts, terms, the flow that is to be subtracted.
 module run_setup
    use kinds, only: wp
-   use faults, only: fault_t
-   use absorbing_boundaries, only: prepare_absorbers
+   use faults, only: fault_t, raise
    use boundary_conditions, only: new_constraint
    use contact_drainage, only: prepare_drainage
    use contact_setup, only: prepare_contacts, place_heavy_plates
-   use equation_assembly, only: make_assembly
-   use held_ground, only: keep_flow
+   use equation_assembly, only: make_assembly, assemble
+   use exit_codes, only: EXIT_MATERIAL
+   use generalised_alpha, only: make_scheme, DYNAMIC
    use initial_conditions, only: initial_state
    use model_types, only: model_t
    use run_state, only: run_t
    use sparsity_pattern, only: make_pattern
+   use texts, only: whole
+   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: prepare_run
 contains
    !> A run at its start; a fault where the initial state is refused. Faults: those of initial_state, prepare_contacts,
-   !> prepare_drainage, prepare_absorbers and keep_flow.
+   !> prepare_drainage, keep_flow and the terms.
    subroutine prepare_run(model, run, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
+      integer :: i
 
       run%system%reuse = model%reuse_factors
       run%system%sparse%ordering = model%ordering
@@ -33,10 +36,31 @@ contains
       if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
       if (fault%code == 0) call prepare_drainage(model, run%drainage, fault)
       if (fault%code == 0) call place_heavy_plates(model, run%system%contacts, run%state)
-      if (fault%code == 0) call prepare_absorbers(model, run%state, run%constraint%dashpots, fault)
+      run%terms = model%terms
+      do i = 1, size(run%terms)
+         if (fault%code == 0) call run%terms(i)%term%begin_run(model, run%solution_t, fault)
+      end do
       run%next = run%state
       if (any(model%domain%regions%stiffness_damping > 0.0_wp)) &
          allocate (run%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
    end subroutine prepare_run
+
+   !> The flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault EXIT_MATERIAL:
+   !> a material refuses the initial state.
+   subroutine keep_flow(model, run, fault)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      call assemble(model%domain, model%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, run%next, &
+                    .false., run%assembly)
+      if (run%assembly%bad_element > 0) then
+         call raise(fault, EXIT_MATERIAL, 'The initial state is refused by the material of element '// &
+                    whole(run%assembly%bad_element)//'.')
+         return
+      end if
+      where (model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
+      run%next = run%state
+   end subroutine keep_flow
 end module run_setup

@@ -8,46 +8,23 @@ module run_state
    use contact_interfaces, only: exchange_contacts
    use control_state, only: control_state_t, new_control_state, exchange_control
    use energy_ledger, only: ledger_t, exchange_ledger
-   use equation_assembly, only: assembly_t
    use initial_conditions, only: tension_t
-   use linear_system, only: system_t
-   use model_types, only: model_t, gravity_at
-   use prescribed_values, only: constraint_t
-   use porous_domain, only: state_t, copy_state, exchange_state
+   use model_types, only: model_t, term_box_t, gravity_at
+   use porous_domain, only: copy_state, exchange_state
    use pressure_alarm, only: lines_t
-   use sparsity_pattern, only: pattern_t, make_pattern
+   use solution, only: solution_t, stage_state_t
+   use sparsity_pattern, only: make_pattern
    use water_balance, only: water_t
    implicit none (type, external)
    private
-   public :: run_t, stage_state_t, exchange_run
+   public :: run_t, exchange_run
 
-   !> Place in the stages, and the step size.
-   type :: stage_state_t
-      integer :: stage = 0                     !< Number of the stage under way; 0: before the first.
-      integer :: step = 0                      !< Steps done in it.
-      integer :: cuts = 0, good = 0            !< Cuts in force; accepted steps since the last cut or growth.
-      real(wp) :: t_start = 0.0_wp             !< Time at its start [s].
-      real(wp) :: nominal = 0.0_wp             !< Step without cuts [s].
-      real(wp) :: factor = 1.0_wp              !< Share of it after cuts.
-      real(wp), allocatable :: x_start(:, :)   !< Unknowns at its start, which some boundaries hold.
-      ! Where parts of the ground join or leave, else not allocated.
-      real(wp), allocatable :: held_up(:)      !< (unknowns) Forces at the start of what leaves with this stage [kN].
-      logical, allocatable :: absent(:)        !< (unknowns) No present element has them.
-      !> (unknowns) What acted at once at the start and is applied evenly over the stage; not allocated: nothing [kN].
-      real(wp), allocatable :: sudden(:)
-   end type stage_state_t
-
-   type :: run_t
-      type(pattern_t) :: pattern               !< Of the matrix; it grows with the contacts.
-      type(assembly_t) :: assembly
-      type(system_t) :: system
-      type(constraint_t) :: constraint
+   type, extends(solution_t) :: run_t
+      type(term_box_t), allocatable :: terms(:)   !< Those of the model, with what they keep from step to step.
       type(drainage_t) :: drainage
-      type(state_t) :: state, next             !< Before and after the step under way.
       type(ledger_t) :: ledger
       !> (4, points) Stress of the damping in proportion to the stiffness, for the ledger; where a region has it [kPa].
       real(wp), allocatable :: damping_stress(:, :)
-      type(stage_state_t) :: at
       type(tension_t) :: tension               !< Of the initial state, for a warning.
       type(control_state_t) :: control         !< Of the time step, in stages that choose it.
       integer :: steps = 0, iterations = 0, cuts = 0
@@ -66,6 +43,7 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(archive_t), intent(inout) :: archive
+      integer :: i
 
       call exchange_stage_state(size(model%stages), run%at, archive)
       call archive%exchange('steps', run%steps, '-', 'steps', least=0)
@@ -76,8 +54,9 @@ contains
       call archive%exchange('largest', run%system%largest, 'kN', 'largest scale of every field')
       if (allocated(run%damping_stress)) call archive%exchange('damping_stress', run%damping_stress, 'kPa', &
          'stress of the damping in proportion to the stiffness')
-      if (allocated(run%constraint%dashpots)) call archive%exchange('offset', run%constraint%offset, 'kN, m3/s', &
-         'flow that is subtracted, forces that hold the ground')
+      do i = 1, size(run%terms)
+         call run%terms(i)%term%exchange(run%solution_t, archive)
+      end do
       if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
                                                            size(model%contacts))
       call exchange_control(run%control, archive)

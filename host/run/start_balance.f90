@@ -2,8 +2,8 @@
 !> Whether the ground of a scene begins in balance: the forces that nothing balances at time 0, as a stress.
 !> docs/theory/host.md section 8.
 module start_balance
+   use acting_places, only: acting_stages
    use kinds, only: wp
-   use absorbing_boundaries, only: absorber_acts
    use boundary_loads, only: plate_loads
    use contact_setup, only: contacts_act
    use initial_conditions, only: balance_t
@@ -48,7 +48,7 @@ contains
                                      trial%next, trial%assembly, trial%system, touched)) return
          touched = touched - forces
       end if
-      call let_go_of_held(model, run, forces)
+      call let_go_of_held(model, forces)
       call add_carried_loads(model, touched, forces)
       call look_around(model, run, areas, stress)
       unbalanced = 0.0_wp
@@ -67,10 +67,9 @@ contains
       balance%x = model%domain%mesh%x(:, model%dofs%node(i))
    end subroutine find_imbalance
 
-   !> Supports and absorbing boundaries of the first stage hold what they have, rigid bodies stand on their contacts.
-   subroutine let_go_of_held(model, run, forces)
+   !> Supports and dashpots of the first stage hold what they have, rigid bodies stand on their contacts.
+   subroutine let_go_of_held(model, forces)
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
       integer :: i, k, at
 
@@ -83,8 +82,17 @@ contains
             end do
          end associate
       end do
-      do i = 1, size(model%absorbers)
-         if (absorber_acts(model%absorbers(i), model%stages(1))) where (run%constraint%dashpots(i)%held) forces = 0.0_wp
+      do i = 1, size(model%actions)
+         associate (one => model%actions(i))
+            if (.not. one%damps .or. all(acting_stages(model, one) /= model%stages(1)%name)) cycle
+            associate (nodes => model%domain%mesh%groups(one%group)%nodes)
+               do k = 1, size(nodes)
+                  do at = 1, DISPLACEMENTS
+                     if (model%dofs%of(at, nodes(k)) > 0) forces(model%dofs%of(at, nodes(k))) = 0.0_wp
+                  end do
+               end do
+            end associate
+         end associate
       end do
       do i = 1, size(forces)
          if (any(model%domain%bodies == model%dofs%node(i))) forces(i) = 0.0_wp

@@ -5,8 +5,8 @@ module step_attempt
    use kinds, only: wp
    use exit_codes, only: EXIT_CONVERGENCE
    use faults, only: fault_t, raise
-   use boundary_conditions, only: constrain_step, follow_accelerations, starting_accelerations
-   use boundary_loads, only: rain_at
+   use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
+   use boundary_loads, only: load_at, rain_at
    use contact_drainage, only: find_impervious_nodes
    use contact_interfaces, only: begin_friction
    use contact_types, only: contact_message
@@ -15,44 +15,37 @@ module step_attempt
    use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
    use given_pressures, only: follow_undrained
-   use ground_stages, only: acting_load, change_ground, growth_at, fix_absent_unknowns
-   use held_ground, only: hold_ground, set_incoming_waves
    use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use porous_domain, only: copy_state
-   use run_state, only: run_t, stage_state_t
+   use run_state, only: run_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
-   use step_size, only: begin_control, prepare_rates, judge_step, shorten_step
+   use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
    use scene_types, only: stage_t
-   use strength_builder, only: follow_strengths
+   use solution, only: stage_state_t
    implicit none (type, external)
    private
-   public :: begin_stage, try_step
+   public :: begin_stage, resume_stage, try_step
 
    integer, parameter :: CUTS_IN_VAIN = 2   !< At the start of a static stage, until what acts at once is spread.
    real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Of the numbers at the present time: its rounding.
 contains
-   !> Sets a run at the start of stage `number`: prescribed values, absorbing boundaries, control of the steps, first
-   !> accelerations. docs/theory/host.md section 4.1. Faults: those of find_impervious_nodes, hold_ground and, for the
-   !> accelerations, explain_failure.
+   !> Sets a run at the start of stage `number`: terms, prescribed values, control of the steps, first accelerations.
+   !> docs/theory/host.md section 4.1. Faults: those of set_step and, for the accelerations, explain_failure.
    subroutine begin_stage(model, number, run, fault)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      logical :: changes
 
       associate (stage => model%stages(number))
-         call follow_strengths(model, run%state%time, run%state%time, run%next, changes)
          run%at = stage_state_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
-         call change_ground(model, number, .true., run, fault)
-         if (fault%code /= 0) return
-         call prescribe(model, stage, run%state%time, run, fault)
+         call begin_terms(model, .true., run, fault)
          if (fault%code /= 0) return
          run%system%factored = .false.
          run%assembly%slopes%known = .false.
-         if (allocated(run%constraint%dashpots)) call hold_ground(model, number, run, fault)
+         call set_step(model, stage, 0.0_wp, run, fault)
          if (fault%code /= 0) return
          call begin_control(model, stage, run)
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
@@ -61,6 +54,27 @@ contains
                                                                       run%state) - run%ledger%kinetic
       end associate
    end subroutine begin_stage
+
+   !> Puts a run that is taken up in the middle of its stage there. Faults: those of the terms.
+   subroutine resume_stage(model, run, fault)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+
+      call begin_terms(model, .false., run, fault)
+   end subroutine resume_stage
+
+   subroutine begin_terms(model, begins, run, fault)
+      type(model_t), intent(in) :: model
+      logical, intent(in) :: begins   !< Else the run is in the middle of its stage.
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      do i = 1, size(run%terms)
+         if (fault%code == 0) call run%terms(i)%term%begin_stage(model, begins, run%solution_t, fault)
+      end do
+   end subroutine begin_terms
 
    !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
    !> docs/theory/host.md section 4.4. Faults: that of find_impervious_nodes; that of explain_failure where no cut is
@@ -77,27 +91,18 @@ contains
       type(scheme_t) :: scheme
       real(wp), allocatable :: a0(:, :)
       real(wp) :: share
-      logical :: lost, changes
+      logical :: lost
 
       accepted = .false.
       if (dt < shortest_step(stage, run)) then
          call explain_short_step(stage, run, dt, fault)
          return
       end if
-      run%constraint%load_0 = acting_load(model, stage, run, run%state%time)
-      run%constraint%load_1 = acting_load(model, stage, run, run%state%time + dt)
-      run%constraint%rain_0 = rain_at(model, stage, model%dofs, run%state%time)
-      run%constraint%rain_1 = rain_at(model, stage, model%dofs, run%state%time + dt)
-      if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, dt, run)
       run%next%gravity = gravity_at(model, run%state%time + dt)
-      run%next%growth = growth_at(stage, run, run%state%time + dt)
-      call follow_strengths(model, run%state%time, run%state%time + dt, run%next, changes)
-      ! Slopes know nothing of a strength that changes.
-      if (changes) run%assembly%slopes%known = .false.
-      call prescribe(model, stage, run%state%time + dt, run, fault)
+      call set_step(model, stage, dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
-      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+      scheme = scheme_of(stage, run, dt)
       if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, model%dofs, scheme, run%state, &
                                                                   run%constraint)
       call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
@@ -161,15 +166,31 @@ contains
       dt = max(LEAST_OF_STAGE*stage%duration, LEAST_SPACINGS*spacing(run%state%time))
    end function shortest_step
 
-   !> Prescribed unknowns of a step that ends at a time, from the state that it starts from.
-   subroutine prescribe(model, stage, time, run, fault)
+   !> Loads and prescribed unknowns of a step from the state that it starts from, of the scene and of its terms. Its
+   !> length is 0 where a stage begins.
+   subroutine set_step(model, stage, dt, run, fault)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time
+      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       character(400) :: text
+      integer :: i
 
+      associate (c => run%constraint, until => run%state%time + dt)
+         c%load_0 = load_at(model, stage, model%dofs, run%state%time)
+         c%load_1 = load_at(model, stage, model%dofs, until)
+         c%rain_0 = rain_at(model, stage, model%dofs, run%state%time)
+         c%rain_1 = rain_at(model, stage, model%dofs, until)
+         do i = 1, size(run%terms)
+            if (fault%code == 0) call run%terms(i)%term%before_step(model, dt, run%solution_t, fault)
+         end do
+         if (fault%code /= 0) return
+         if (allocated(run%at%sudden)) then
+            c%load_0 = c%load_0 - (1 - run%at%share_of(stage%duration, run%state%time))*run%at%sudden
+            c%load_1 = c%load_1 - (1 - run%at%share_of(stage%duration, until))*run%at%sudden
+         end if
+      end associate
       call find_impervious_nodes(model, run%drainage, run%system%contacts, run%state%x, fault)
       if (fault%code /= 0) return
       if (.not. begin_friction(run%system%contacts, run%state%x)) then
@@ -177,10 +198,12 @@ contains
          call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//trim(text)//'.')
          return
       end if
-      call constrain_step(model, stage, model%dofs, run%drainage, time, run%at%x_start, run%state%x, &
-                          run%constraint)
-      call fix_absent_unknowns(model%dofs, run, run%constraint)
-   end subroutine prescribe
+      call constrain_step(model, stage, model%dofs, run%drainage, run%state%time + dt, run%at%x_start, run%constraint)
+      do i = 1, size(run%terms)
+         call run%terms(i)%term%prescribe(model, run%state%time + dt, run%solution_t)
+      end do
+      call complete_constraint(stage, model%dofs, run%at%x_start, run%state%x, run%constraint)
+   end subroutine set_step
 
    subroutine first_accelerations(model, stage, run, fault)
       type(model_t), intent(in) :: model
@@ -189,8 +212,6 @@ contains
       type(fault_t), intent(inout) :: fault
       type(log_t) :: log
 
-      run%constraint%load_0 = acting_load(model, stage, run, run%state%time)
-      if (allocated(run%constraint%dashpots)) call set_incoming_waves(model, stage, 0.0_wp, run)
       if (any(model%fixes%acceleration)) then
          if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))
          call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &

@@ -8,7 +8,7 @@ module step_failure
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
    use free_bodies, only: bodies_on_contact
-   use model_types, only: model_t, factor_at
+   use model_types, only: model_t, term_box_t
    use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use run_state, only: run_t
@@ -43,7 +43,7 @@ contains
             if (run%assembly%bad%code == STRAIN_TOO_LARGE) then
                call raise(fault, EXIT_CONVERGENCE, place//', is strained by more than 1 in the step: the iteration '// &
                           'did not converge, the step is far too long, or the load is far beyond the stiffness'// &
-                          unstressed(run)//weakened(model, time)//advice(stage, run))
+                          unstressed(run)//remarks(model, run%terms, time)//advice(stage, run))
                return
             end if
             call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
@@ -73,7 +73,7 @@ contains
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations'//soft_points(model, run)//'; '//what_is_left(stage, log)//' (allowed '// &
                        short(stage%tolerance)//'), worst at '//place_of(model, node)// &
-                       unstressed(run)//weakened(model, time)//advice(stage, run))
+                       unstressed(run)//remarks(model, run%terms, time)//advice(stage, run))
          end select
       end associate
    end subroutine explain_failure
@@ -91,21 +91,19 @@ contains
       text = text//'a better tangent (tangent of the material) or a larger tolerance.'
    end function advice
 
-   !> How much of a strength is left, where one changes with time: a body without equilibrium has no other step.
-   function weakened(model, time) result(text)
+   !> What the terms of the scene may have to do with it.
+   function remarks(model, terms, time) result(text)
       type(model_t), intent(in) :: model
+      type(term_box_t), intent(in) :: terms(:)
       real(wp), intent(in) :: time   !< [s]
       character(:), allocatable :: text
       integer :: i
 
       text = ''
-      do i = 1, size(model%strengths)
-         associate (s => model%strengths(i))
-            text = text//'. By &strength '//trim(s%parameter_name)//' of '''//trim(s%material_name)//''' is at '// &
-                   short(factor_at(model, s%amplitude, time))//' of its value: it may have failed'
-         end associate
+      do i = 1, size(terms)
+         text = text//terms(i)%term%remark(model, time)
       end do
-   end function weakened
+   end function remarks
 
    !> That soil began without stress, where it did: the likely cause of a failure.
    function unstressed(run) result(text)

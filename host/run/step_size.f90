@@ -7,7 +7,7 @@ module step_size
    use contact_landings, only: closed_contacts, ends_at_closing, end_where_it_closes
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
    use error_norms, only: shift_rates, local_errors, remember, forget, rms
-   use generalised_alpha, only: make_scheme, STATIC, QUASI_STATIC, DYNAMIC
+   use generalised_alpha, only: make_scheme, scheme_t, STATIC, QUASI_STATIC, DYNAMIC
    use model_types, only: model_t
    use run_state, only: run_t
    use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
@@ -16,7 +16,8 @@ module step_size
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: begin_control, negligible_changes, next_step, prepare_rates, judge_step, shorten_step, keep_step, is_over
+   public :: begin_control, negligible_changes, next_step, scheme_of, prepare_rates, judge_step, shorten_step, &
+             keep_step, is_over
 
    !> A step of length dt errs by its third power, n of them by n dt**3: together by the tolerance a where each errs by
    !> a**(3/2), if the change as a whole is as smooth as a step.
@@ -165,6 +166,18 @@ contains
          next_end = min(next_end, minval(ends, mask=ends > run%state%time + LAST_STEP*run%at%nominal))
       end associate
    end function next_end
+
+   !> Scheme of the step to come. Where a flow begins the rates before would take a share of what flows in that step out
+   !> of the balances: docs/theory/host.md section 4.2.
+   pure type(scheme_t) function scheme_of(stage, run, dt) result(scheme)
+      type(stage_t), intent(in) :: stage
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: dt   !< [s]
+      logical :: begins
+
+      begins = run%at%step == 0 .or. (stage%controlled .and. run%control%fresh == 0)
+      scheme = make_scheme(stage%kind, stage%rho_inf, dt, stage%kind == QUASI_STATIC .and. begins)
+   end function scheme_of
 
    !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5; where
    !> steps are given they stay.

@@ -8,7 +8,7 @@ module time_stepping
    use contact_interfaces, only: stretch_ties
    use contact_setup, only: contacts_act
    use convergence, only: control_t, log_t
-   use generalised_alpha, only: scheme_t, make_scheme
+   use generalised_alpha, only: scheme_t
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
    use effect_indicators, only: indicators_of
@@ -16,12 +16,11 @@ module time_stepping
    use run_state, only: run_t
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
-   use step_attempt, only: begin_stage, try_step
-   use step_size, only: negligible_changes, next_step, keep_step, is_over
+   use step_attempt, only: begin_stage, resume_stage, try_step
+   use step_size, only: negligible_changes, next_step, scheme_of, keep_step, is_over
    use step_landings, only: LAST_STEP
    use step_booking, only: book_accepted_step
    use energy_alarm, only: check_creation, warn_of_created_energy
-   use ground_stages, only: change_ground
    use contact_alarm, only: warn_of_penetration, warn_of_overlap
    use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
    use unknown_fields, only: DISPLACEMENTS
@@ -88,7 +87,7 @@ contains
          ! A run that is taken up again is in the middle of its stage.
          call contacts_act(model, stage, run%system%contacts)
          if (at%stage == number) then
-            call change_ground(model, number, .false., run, fault)
+            call resume_stage(model, run, fault)
          else
             if (warns(observer)) call warn_of_overlap(model, number, run%system%contacts, run%state%x)
             call begin_stage(model, number, run, fault)
@@ -145,7 +144,7 @@ contains
       logical :: checkpoint
 
       associate (stage => model%stages(number), at => run%at)
-         scheme = make_scheme(stage%kind, stage%rho_inf, dt)
+         scheme = scheme_of(stage, run, dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
          if (warns(observer)) call warn_of_penetration(model, run%next%time, run%system%contacts)

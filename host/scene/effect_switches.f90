@@ -43,16 +43,15 @@ contains
          present = size(scene%contacts) > 0
       case (OF_DAMPING)
          present = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
-      case (OF_ABSORBING)
-         present = size(scene%absorbers) > 0
       case (OF_DRAINAGE)
          present = any(scene%contacts%drains_by_state)
       case (OF_LIMITS)
          present = scene%fields /= WITH_U .and. (any(scene%fixes%limits) .or. any(scene%loads%kind == LOAD_RAIN))
       case (OF_FRICTION)
          present = any(scene%contacts%options%friction > 0.0_wp .or. scene%contacts%options%cohesion > 0.0_wp)
-      case (OF_STRENGTH)
-         present = size(scene%strengths) > 0
+      case (OF_ABSORBING, OF_STRENGTH)
+         ! Groups of the name of the effect.
+         present = any(scene%groups%name == EFFECTS(effect))
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
@@ -112,8 +111,6 @@ contains
       case (OF_DAMPING)
          scene%regions%damping = 0.0_wp
          scene%regions%stiffness_damping = 0.0_wp
-      case (OF_ABSORBING)
-         scene%absorbers = scene%absorbers(:0)
       case (OF_DRAINAGE)
          scene%contacts%drains_by_state = .false.
       case (OF_LIMITS)
@@ -123,8 +120,8 @@ contains
       case (OF_FRICTION)
          scene%contacts%options%friction = 0.0_wp
          scene%contacts%options%cohesion = 0.0_wp
-      case (OF_STRENGTH)
-         scene%strengths = scene%strengths(:0)
+      case (OF_ABSORBING, OF_STRENGTH)
+         scene%kept = scene%kept .and. scene%groups%name /= EFFECTS(effect)
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case default

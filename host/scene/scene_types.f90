@@ -15,9 +15,8 @@ module scene_types
    implicit none (type, external)
    private
    public :: scene_t, scene_item_t, scene_mesh_t, scene_law_t, scene_region_t
-   public :: initial_t, amplitude_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, &
-             strength_t
-   public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
+   public :: initial_t, amplitude_t, stage_t, fix_t, load_t, plate_t, contact_pair_t, tie_t, point_t
+   public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, item_of, place_of, groups_named, amplitude_at
    public :: WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, PRESCRIBED_TURN
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
              LOAD_MOMENT
@@ -66,7 +65,6 @@ module scene_types
       real(wp) :: rho_s = 2.65_wp, void_ratio = -1.0_wp, damping = 0.0_wp, stiffness_damping = 0.0_wp
       integer :: drainage = COUPLED
       logical :: rest = .false.         !< Without a group: the elements that no other region has.
-      character(LENGTH), allocatable :: stages(:)   !< In which it is part of the ground.
    end type scene_region_t
 
    type, extends(scene_item_t) :: initial_t
@@ -83,12 +81,6 @@ module scene_types
       real(wp) :: sigma(3) = 0.0_wp, surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp
       logical :: net = .true.           !< K_0 acts on the net stress where p_c > 0.
    end type initial_t
-
-   !> A parameter of a material that follows a history. docs/theory/host.md section 15.
-   type, extends(scene_item_t) :: strength_t
-      character(LENGTH) :: material_name = '', parameter_name = '', amplitude_name = ''
-      integer :: place = 0, amplitude = 0            !< In the law, in the histories.
-   end type strength_t
 
    !> How a value changes with time.
    type, extends(scene_item_t) :: amplitude_t
@@ -166,14 +158,6 @@ module scene_types
       character(LENGTH), allocatable :: stages(:)
    end type contact_pair_t
 
-   !> A boundary through which waves leave, and may come in.
-   type, extends(scene_item_t) :: absorber_t
-      character(LENGTH) :: group_name = '', amplitude_name = ''
-      integer :: group = 0, amplitude = 0
-      real(wp) :: rho = 0.0_wp, c_p = 0.0_wp, c_s = 0.0_wp, incoming(2) = 0.0_wp
-      character(LENGTH), allocatable :: stages(:)
-   end type absorber_t
-
    !> Two boundaries whose nodes at equal heights move as one.
    type, extends(scene_item_t) :: tie_t
       character(LENGTH) :: first_name = '', second_name = ''
@@ -194,6 +178,7 @@ module scene_types
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
       integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
       type(group_t), allocatable :: groups(:)        !< As they were read.
+      logical, allocatable :: kept(:)                !< Whether `without` leaves a group in. (groups)
       logical :: axisymmetric = .true., linear_pressures = .true.
       integer :: fields = WITH_U, quadrature = 6, threads = 0
       real(wp) :: gravity = 0.0_wp
@@ -212,7 +197,6 @@ module scene_types
       type(permeability_t), allocatable :: permeabilities(:)
       type(scene_law_t), allocatable :: materials(:), retentions(:)
       type(scene_region_t), allocatable :: regions(:)
-      type(strength_t), allocatable :: strengths(:)
       type(initial_t), allocatable :: initials(:)
       type(amplitude_t), allocatable :: amplitudes(:)
       type(stage_t), allocatable :: stages(:)
@@ -220,11 +204,27 @@ module scene_types
       type(load_t), allocatable :: loads(:)
       type(plate_t), allocatable :: plates(:)
       type(contact_pair_t), allocatable :: contacts(:)
-      type(absorber_t), allocatable :: absorbers(:)
       type(tie_t), allocatable :: ties(:)
       type(point_t), allocatable :: points(:)
    end type scene_t
 contains
+   !> Where a group stands.
+   pure function item_of(group) result(item)
+      type(group_t), intent(in) :: group
+      type(scene_item_t) :: item
+
+      item = scene_item_t(group%file, group%line)
+   end function item_of
+
+   !> Groups of a name as they were read, without those that `without` has taken out.
+   pure function groups_named(scene, name) result(groups)
+      type(scene_t), intent(in) :: scene
+      character(*), intent(in) :: name
+      type(group_t), allocatable :: groups(:)
+
+      groups = pack(scene%groups, scene%groups%name == name .and. scene%kept)
+   end function groups_named
+
    !> "FILE:LINE: " of a group of the scene.
    pure function place_of(item) result(place)
       class(scene_item_t), intent(in) :: item

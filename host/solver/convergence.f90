@@ -26,33 +26,35 @@ module convergence
    integer, parameter :: BY_CHANGE = 4       !< The errors of the fields against what the step changes.
    integer, parameter :: BY_STAGE = 5        !< By forces in dynamic stages with contact, by change in others.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
-   !> Of all forces: what their sums leave, some hundred roundings. No tolerance of a change asks for less.
+   !> Share of all forces that their sums leave, some hundred roundings. No tolerance of a change asks for less.
    real(wp), parameter :: ROUNDING_OF_SUMS = 1.0e-13_wp
-   !> The same with inertia: accelerations are differences of displacements over dt**2, so that rounding leaves
-   !> 4/(omega dt)**2 epsilon of a motion; this has room for three thousand steps a period.
+   !> Share of all forces that their sums leave with inertia: accelerations are differences of displacements over dt**2,
+   !> so that rounding leaves 4/(omega dt)**2 epsilon of a motion; this has room for three thousand steps a period.
    real(wp), parameter :: ROUNDING_OF_INERTIA = 1.0e-10_wp
-   !> Of Newton's tolerance, left to the linear solution. What it leaves is noise in the strains: a material without an
-   !> elastic domain takes noise for reversals and becomes stiffer (docs/theory/host.md section 6).
+   !> Share of Newton's tolerance that is left to the linear solution. What it leaves is noise in the strains: a
+   !> material without an elastic domain takes noise for reversals and becomes stiffer (docs/theory/host.md section 6).
    real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp
    integer, parameter :: PATIENCE = 6          !< Iterations without progress after which the error stagnates.
    integer, parameter :: MOST_IN_VAIN = 20     !< Iterations without progress after which no further one helps.
-   real(wp), parameter :: PROGRESS = 0.5_wp    !< Of the smallest error so far: more is no progress.
-   real(wp), parameter :: MOST_KEPT = 0.9_wp   !< Of a correction, by the next one: slower ones are not trusted.
+   real(wp), parameter :: PROGRESS = 0.5_wp    !< Share of the smallest error so far: more is no progress.
+   real(wp), parameter :: MOST_KEPT = 0.9_wp   !< Share of a correction that the next one keeps: slower ones are not
+                                               !< trusted.
    real(wp), parameter :: MOST_ROUGH = 1.0e-3_wp   !< Error above which no roughness is blamed for it.
-   real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Of strain rates and parts of fluxes, see above.
+   real(wp), parameter :: RATE_SHARE = 1.0e-4_wp      !< Share of strain rates and parts of fluxes that is a floor, see
+                                                      !< above.
    real(wp), parameter :: NO_FORCE = 1.0e-150_wp   !< [kN] or [m3/s]: nothing is divided by zero.
 
    type :: control_t
       real(wp) :: tolerance = 1.0e-3_wp
       integer :: max_iterations = 12
       logical :: no_predictor = .false.              !< Predict no change.
-      integer :: measure = BY_FORCES          !< What has to fall below the tolerance.
+      integer :: measure = BY_FORCES          !< Measure of the error that has to fall below the tolerance.
       real(wp) :: roughness = 0.0_wp          !< Tolerance of the stress integration, the largest of the regions [-].
       !> Changes of pressures that the errors of the steps hide; 0: none, as of the displacements [m, kPa].
       real(wp) :: negligible(FIELDS) = 0.0_wp
    end type control_t
 
-   !> What a step did.
+   !> Log of the iterations of a step.
    type :: log_t
       integer :: outcome = 0                  !< One of the outcomes of newton_step; 0: converged.
       integer :: iterations = 0
@@ -60,16 +62,17 @@ module convergence
       real(wp) :: reduction = 0.0_wp          !< |R| over the larger of |R_0| and |R_1|.
       real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
       real(wp) :: changed(FIELDS) = 0.0_wp    !< Largest |dx| of every field in the last correction [m, kPa].
-      real(wp) :: before(FIELDS) = 0.0_wp     !< The same of the correction before it; 0: there was none.
+      real(wp) :: before(FIELDS) = 0.0_wp     !< Largest |dx| of every field in the correction before it; 0: there was
+                                              !< none.
       logical :: balanced = .false.           !< The residual begins and ends at the rounding of the forces.
       integer :: worst_field = 0, worst_unknown = 0
-      real(wp) :: scales(FIELDS) = 0.0_wp     !< What the errors are shares of [kN, m3/s].
+      real(wp) :: scales(FIELDS) = 0.0_wp     !< Scales that the errors are shares of [kN, m3/s].
       real(wp) :: forces(FIELDS) = 0.0_wp     !< Magnitudes of all contributions, in the norm of a field [kN, m3/s].
       integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
       logical :: refused_guess = .false.      !< The first guess was refused, the step began at the unchanged state.
       real(wp) :: best_error = huge(1.0_wp)             !< Smallest error so far that was progress [-].
       integer :: since_best = 0                         !< Iterations since then.
-      real(wp) :: forces_over_scale = 1.0_wp   !< Of the worst field: all forces over what its error is measured by.
+      real(wp) :: forces_over_scale = 1.0_wp   !< Forces of the worst field over what its error is measured by.
       logical :: stagnated = .false.                    !< Accepted at what the stress integration lets Newton reach.
    end type log_t
 contains
@@ -90,7 +93,7 @@ contains
       share = merge(ROUNDING_OF_INERTIA, ROUNDING_OF_SUMS, kind == DYNAMIC)
    end function rounding_in
 
-   !> What the linear solution may leave of the errors of the fields; 0 where another measure counts: all it can. [-]
+   !> Errors of the fields that the linear solution may leave; 0 where another measure counts: as little as it can. [-]
    !> docs/theory/host.md section 6.
    pure real(wp) function linear_tolerance(control)
       type(control_t), intent(in) :: control
@@ -161,13 +164,13 @@ contains
       in_vain = log%since_best >= MOST_IN_VAIN
    end function is_in_vain
 
-   !> What a residual of a field is small against; rows of prescribed unknowns do not count. docs/theory/host.md section
-   !> 5.1. Of displacements [kN], of pressures [m3/s].
+   !> Scales that the residuals of the fields are small against; rows of prescribed unknowns do not count.
+   !> docs/theory/host.md section 5.1. Of displacements [kN], of pressures [m3/s].
    pure function field_scales(dofs, constraint, assembly, largest) result(scales)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
-      real(wp), intent(in) :: largest(FIELDS)   !< That of every field so far.
+      real(wp), intent(in) :: largest(FIELDS)   !< Largest scale of every field so far.
       real(wp) :: scales(FIELDS)
       real(wp) :: s(FIELDS), floor(FIELDS)
 
@@ -215,7 +218,7 @@ contains
    pure real(wp) function body_scale(constraint, assembly, largest, i)
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
-      real(wp), intent(in) :: largest(FIELDS)   !< As of field_scales.
+      real(wp), intent(in) :: largest(FIELDS)   !< Largest scale of every field so far, as of field_scales.
       integer, intent(in) :: i
       integer :: j, k
 

@@ -18,16 +18,13 @@ module dashpots
       logical :: acts = .false.                  !< In the step under way.
       integer, allocatable :: row(:), column(:)  !< Unknowns of an entry.
       real(wp), allocatable :: value(:)          !< Entry: force over velocity [kN s/m], outflow over rate [m3/kPa].
-      logical, allocatable :: held(:)            !< (unknowns) Displacements of the boundary.
-      integer :: amplitude = 0                   !< Amplitude of the incoming wave, 0: none.
-      real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
    end type dashpots_t
 contains
    !> Adds forces and outflow at the levels of their rates, and the slopes. docs/theory/host.md section 7.4. Nothing in
    !> steps that are not dynamic. Into residual and scale [kN, m3/s] and the matrix, whose pattern must have their
    !> places.
    subroutine add_dashpots(list, dofs, pattern, scheme, old, new, slopes, assembly)
-      type(dashpots_t), intent(in) :: list(:)   !< (absorbing boundaries)
+      type(dashpots_t), intent(in) :: list(:)   !< (dashpots)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
@@ -57,10 +54,10 @@ contains
       end do
    end subroutine add_dashpots
 
-   !> What the forces take out of a step, by the mean of the velocities at its ends, at given displacements [kJ].
-   !> docs/theory/host.md section 9. Those that act; their outflow does no work.
+   !> Work that the acting dashpots take out of a step, by the mean of the velocities at its ends, at given
+   !> displacements [kJ]. docs/theory/host.md section 9. Their outflow does no work.
    pure real(wp) function work_of_dashpots(list, dofs, old, new, change) result(work)
-      type(dashpots_t), intent(in) :: list(:)   !< (absorbing boundaries)
+      type(dashpots_t), intent(in) :: list(:)   !< (dashpots)
       type(dofs_t), intent(in) :: dofs
       type(state_t), intent(in) :: old, new
       real(wp), intent(in) :: change(:, :)   !< (2, nodes) [m]

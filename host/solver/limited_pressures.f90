@@ -12,7 +12,8 @@ module limited_pressures
    public :: begin_sides, choose_sides
 
    real(wp), parameter :: AT_LIMIT = 1.0e-6_wp    !< Share of the limit, and [kPa]: so near a step leaves what it holds.
-   real(wp), parameter :: FLOW_SHARE = 0.01_wp    !< Of Newton's tolerance, of a node's flows: less decides nothing.
+   real(wp), parameter :: FLOW_SHARE = 0.01_wp    !< Share of Newton's tolerance, of a node's flows: less decides
+                                                  !< nothing.
    integer, parameter :: MOST_RELEASES = 3        !< In a step; then a node that alternates keeps its limit.
 contains
    !> The sides at the start of a step follow from the pressures there, so that a step that is cut, and a restart, begin

@@ -31,12 +31,13 @@ module linear_system
       logical :: analysed = .false.
       logical :: reuse = .true.               !< Factors may serve later matrices.
       logical :: factored = .false.           !< There are factors worth trying.
-      logical, allocatable :: fixed(:), air(:)   !< What was fixed when the factors were made.
+      logical, allocatable :: fixed(:), air(:)   !< Unknowns and air pressures that were fixed when the factors were
+                                                 !< made.
       logical :: indefinite = .false.         !< The last solution found its matrix so, see factorise.
       integer :: active = 0                   !< Nodes in contact when the factors were made.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp) :: rounding(FIELDS) = 0.0_wp   !< Least scale of the present step, see convergence.
-      real(wp) :: first_error = 0.0_wp        !< Of the last step, after its first correction, see convergence.
+      real(wp) :: first_error = 0.0_wp        !< Error of the last step after its first correction, see convergence.
       real(wp), allocatable :: reaction(:)    !< Residual with the constrained rows kept.
       real(wp) :: seconds(TIMERS) = 0.0_wp    !< Wall time, by T_...
       integer :: n_pass = 0
@@ -51,7 +52,7 @@ contains
       type(pattern_t), intent(in) :: pattern
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
-      real(wp), intent(in) :: tolerance   !< Of the errors of the fields [-]; 0: what rounding leaves.
+      real(wp), intent(in) :: tolerance   !< Tolerance of the errors of the fields [-]; 0: what rounding leaves.
       real(wp), intent(in) :: rhs(:)   !< (unknowns) [kN, m3/s]
       type(system_t), intent(inout) :: system
       real(wp), intent(out) :: dx(:)   !< (unknowns) [m, kPa]

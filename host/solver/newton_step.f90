@@ -31,13 +31,15 @@ module newton_step
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
                          CONTACT_FAILED = 5
-   real(wp), parameter :: ROUNDING = 1.0e-12_wp       !< Of all contributions: no residual to begin with is smaller.
-   real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp    !< Of an error: stresses of the next pass are integrated to it.
-   real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Of an unknown: old, predicted, corrected, and their difference.
+   real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Share of all contributions: no residual to begin with is smaller.
+   real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp    !< Share of an error to which the stresses of the next pass are
+                                                      !< integrated.
+   real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of an unknown: old, predicted, corrected, and their
+                                               !< difference.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
 contains
-   !> From `old` to `new` over scheme%dt; `new` is of use only after CONVERGED. docs/theory/host.md section 5.
-   !> log%outcome says how it ends: CONVERGED; NOT_CONVERGED after max_iterations or beyond an error of 1e10;
+   !> Solves a step from `old` to `new` over scheme%dt; `new` is of use only after CONVERGED. docs/theory/host.md
+   !> section 5. log%outcome says how it ends: CONVERGED; NOT_CONVERGED after max_iterations or beyond an error of 1e10;
    !> MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see assembly, contacts); BODY_FREE with a
    !> singular matrix; SOLVER_FAILED.
    subroutine take_step(domain, dofs, pattern, scheme, constraint, control, old, new, assembly, system, log)
@@ -55,7 +57,7 @@ contains
       real(wp), allocatable :: rhs(:), dx(:)
       real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
       real(wp) :: norm, norm_0, begun, t0   !< begun: the norm that a reduction is a share of.
-      real(wp) :: rounded(FIELDS)           !< What the rounding of the unknowns makes [kN, m3/s].
+      real(wp) :: rounded(FIELDS)           !< Change of the balances by the rounding of the unknowns [kN, m3/s].
       integer :: status
       logical :: with_tangent, guessed, turned, rough
 
@@ -203,7 +205,7 @@ contains
    !> is singular or indefinite, for all where it stays singular; `fallback` is then of the next level.
    !> docs/theory/host.md section 5.3.
    logical function needs_stiffness(status, system, fallback) result(needs)
-      integer, intent(in) :: status   !< Of solve_step.
+      integer, intent(in) :: status   !< Outcome of solve_step.
       type(system_t), intent(inout) :: system
       integer, intent(inout) :: fallback
 
@@ -214,7 +216,7 @@ contains
       system%factored = .false.
    end function needs_stiffness
 
-   !> What the passes of a step over the elements are asked for.
+   !> Sets what the passes of a step over the elements are asked for.
    pure subroutine begin_passes(scheme, constraint, control, assembly)
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
@@ -228,8 +230,8 @@ contains
       call follow_slopes_first(assembly)
    end subroutine begin_passes
 
-   !> What the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the free
-   !> balances of air [m3/s]. docs/theory/host.md section 5.1.
+   !> Error that the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the
+   !> free balances of air [m3/s]. docs/theory/host.md section 5.1.
    pure real(wp) function rounding_of_saturation(domain, dofs, constraint, state, scheme) result(rounding)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
@@ -259,14 +261,14 @@ contains
       rounding = epsilon(1.0_wp)/scheme%dt*norm2(pack(pores, .not. constraint%fixed))
    end function rounding_of_saturation
 
-   !> What a rounding of every unknown changes in the balances, by the entries of the matrix: the norms over the free
-   !> rows of every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces.
-   !> Of displacements [kN], of pressures [m3/s]. docs/theory/host.md section 5.1.
+   !> Change of the balances by a rounding of every unknown, by the entries of the matrix: the norms over the free rows
+   !> of every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces. Of
+   !> displacements [kN], of pressures [m3/s]. docs/theory/host.md section 5.1.
    pure function rounding_of_unknowns(dofs, pattern, constraint, values, x) result(rounding)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: values(:)   !< Of the matrix, in the order of the pattern.
+      real(wp), intent(in) :: values(:)   !< Entries of the matrix, in the order of the pattern.
       real(wp), intent(in) :: x(:, :)     !< (FIELDS, nodes) [m, kPa]
       real(wp) :: rounding(FIELDS)
       real(wp) :: row

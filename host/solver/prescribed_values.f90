@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What a step prescribes, and the rows of the equations that say so. docs/theory/host.md section 7.1.
+!> Values that a step prescribes, and the rows of the equations that say so. docs/theory/host.md section 7.1.
 module prescribed_values
    use kinds, only: wp
    use dashpots, only: dashpots_t
@@ -13,20 +13,20 @@ module prescribed_values
    !> Prescribed unknowns and loads of a step.
    type :: constraint_t
       logical, allocatable :: fixed(:)        !< Unknowns
-      real(wp), allocatable :: target(:)      !< their values at the end of the step
+      real(wp), allocatable :: target(:)      !< values of the unknowns that are fixed, at the end of the step
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
       real(wp), allocatable :: air_target(:)
       ! Where a pressure has a limit the target is that, and `fixed` says whether it stands there.
       logical, allocatable :: limited(:)      !< Unknowns with a limit: water pressures.
       integer, allocatable :: limited_by(:)   !< The group of the mesh that their run-off belongs to.
-      integer, allocatable :: releases(:)     !< How often they left their limit in this step.
+      integer, allocatable :: releases(:)     !< Number of times that they left their limit in this step.
       integer :: drinks = 0                   !< One that keeps its limit although water enters there, 0: none.
       real(wp), allocatable :: rain_0(:), rain_1(:)   !< Rain in the loads below, before and after [m3/s].
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
-      type(dashpots_t), allocatable :: dashpots(:)   !< Of absorbing boundaries.
+      type(dashpots_t), allocatable :: dashpots(:)   !< Dashpots of terms.
       real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
-      real(wp), allocatable :: mass(:)        !< Of rigid bodies [Mg].
+      real(wp), allocatable :: mass(:)        !< Masses of rigid bodies [Mg].
       integer, allocatable :: bodies(:, :)    !< (3, bodies that turn) Their unknowns.
    end type constraint_t
 contains
@@ -69,8 +69,8 @@ contains
       end subroutine clear
    end subroutine constrain
 
-   !> Where the air pressure is prescribed the first balance is that of the water: so are its loads. docs/theory/host.md
-   !> sections 2.3 and 7.1.
+   !> Replaces the loads of the first balance by those of the water where the air pressure is prescribed.
+   !> docs/theory/host.md sections 2.3 and 7.1.
    pure subroutine loads_of_water(dofs, air, load)
       type(dofs_t), intent(in) :: dofs
       logical, intent(in) :: air(:)   !< (nodes) Whether the air pressure is prescribed.

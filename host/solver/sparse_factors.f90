@@ -137,7 +137,8 @@ contains
       sparse%n_numeric = sparse%n_numeric + 1
    end subroutine factorise
 
-   !> By the factors as they are; `values` is not looked at. status: SOLVED or FAILED. To be called after factorise.
+   !> Solves by the factors as they are; `values` is not looked at. status: SOLVED or FAILED. To be called after
+   !> factorise.
    subroutine backsolve(sparse, values, b, x, status)
       type(sparse_t), intent(inout) :: sparse
       real(wp), intent(in) :: values(:), b(:)   !< (entries); (n).

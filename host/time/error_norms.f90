@@ -74,7 +74,7 @@ contains
    !> 4.5. Rates stay in static steps and where none are known from before; in dynamic steps those of the displacements
    !> stay.
    pure subroutine shift_rates(scheme, memory, v, s_rate)
-      type(scheme_t), intent(in) :: scheme   !< Of the step to come.
+      type(scheme_t), intent(in) :: scheme   !< Scheme of the step to come.
       type(rate_memory_t), intent(inout) :: memory
       real(wp), intent(inout) :: v(:, :), s_rate(:)   !< (fields, nodes) rates [m/s, kPa/s]; (points) rate of S_w [1/s].
       real(wp) :: share
@@ -130,7 +130,7 @@ contains
    !> stiffness changes along it, which is the share by which the rate does. docs/theory/host.md section 4.5.
    pure function static_error(rate, rate_before, dt, dt_before) result(error)
       real(wp), intent(in) :: rate(:, :), rate_before(:, :)   !< (fields, nodes) of this step and of the last one.
-      real(wp), intent(in) :: dt, dt_before                   !< Their lengths [s].
+      real(wp), intent(in) :: dt, dt_before                   !< Lengths of both steps [s].
       real(wp) :: error(size(rate, 1), size(rate, 2)), share
 
       error = (rate - rate_before)/(0.5_wp*(dt + dt_before))

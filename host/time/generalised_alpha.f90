@@ -18,7 +18,7 @@ module generalised_alpha
       integer :: kind = STATIC
       real(wp) :: dt = 1.0_wp
       real(wp) :: beta = 0.25_wp, gamma = 0.5_wp   !< Newmark's, for displacements of dynamic steps.
-      real(wp) :: gamma_1 = 1.0_wp                 !< Of first-order rates.
+      real(wp) :: gamma_1 = 1.0_wp                 !< Weight of the new rate, for first-order rates.
       real(wp) :: l_f = 1.0_wp                     !< Level of values.
       real(wp) :: l_v = 1.0_wp                     !< Level of displacement rates.
       real(wp) :: l_a = 1.0_wp                     !< Level of accelerations.
@@ -28,10 +28,11 @@ module generalised_alpha
 contains
    !> Coefficients of a step of kind STATIC, QUASI_STATIC or DYNAMIC. Chung & Hulbert (1993), Jansen et al. (2000):
    !> docs/theory/host.md section 4.1, gamma_1 section 4.2.
-   pure function make_scheme(kind, rho_inf, dt) result(scheme)
+   pure function make_scheme(kind, rho_inf, dt, begins) result(scheme)
       integer, intent(in) :: kind
       real(wp), intent(in) :: rho_inf   !< 0 to 1
       real(wp), intent(in) :: dt        !< [s]
+      logical, intent(in), optional :: begins   !< A flow begins: the rates before say nothing. Default: no.
       type(scheme_t) :: scheme
 
       scheme%kind = kind
@@ -40,6 +41,10 @@ contains
       scheme%l_f = 1/(1 + rho_inf)
       scheme%l_p = (3 - rho_inf)/(2*(1 + rho_inf))
       scheme%gamma_1 = 1/(1 + rho_inf)
+      if (present(begins)) then
+         if (begins) scheme%l_p = 1.0_wp
+         if (begins) scheme%gamma_1 = 1.0_wp
+      end if
       scheme%c_p = scheme%l_p/(scheme%gamma_1*dt)
       if (kind == QUASI_STATIC) then
          scheme%l_v = scheme%l_p
@@ -61,7 +66,7 @@ contains
       logical, intent(in) :: no_predictor
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :)   !< (FIELDS, nodes) [m, kPa], rates [1/s of it], (2, nodes)
                                                              !< [m/s2].
-      real(wp), intent(out) :: x1(:, :)   !< As x0.
+      real(wp), intent(out) :: x1(:, :)   !< Predicted values, in the shape of x0.
 
       x1 = x0
       if (no_predictor .or. scheme%kind == STATIC) return

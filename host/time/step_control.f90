@@ -12,7 +12,7 @@ module step_control
    real(wp), parameter :: REJECTED_ABOVE = 1.2_wp   !< Ratio of error to allowance beyond which a step is repeated.
    real(wp), parameter :: LARGEST_FACTOR = 2.0_wp, SMALLEST_FACTOR = 0.2_wp
    integer, parameter :: MOST_REJECTIONS = 10       !< In a row: 0.2**10 is as good as nothing.
-   real(wp), parameter :: SAFETY = 0.9_wp           !< Of the step that the error asks for.
+   real(wp), parameter :: SAFETY = 0.9_wp           !< Share that is taken of the step that the error asks for.
    !> A longer step that gains less than this is not taken: the factors of the matrix serve equal steps.
    real(wp), parameter :: DEADBAND = 1.2_wp
    real(wp), parameter :: ORDER = 3.0_wp            !< A step of second order errs by its third power.
@@ -21,7 +21,7 @@ module step_control
 
    type :: controller_t
       real(wp) :: dt = 0.0_wp           !< Next step [s].
-      real(wp) :: last_ratio = 1.0_wp   !< Of the last accepted step.
+      real(wp) :: last_ratio = 1.0_wp   !< Ratio of error to allowance of the last accepted step.
       integer :: rejections = 0         !< In a row, of the step under way.
       logical :: held = .false.         !< The last attempt was rejected: no growth.
    end type controller_t
@@ -50,9 +50,9 @@ contains
    !> 4.5.
    pure subroutine judge(controller, dt, ratio, accepted)
       type(controller_t), intent(inout) :: controller
-      real(wp), intent(in) :: dt      !< That was tried; shorter than asked where it had to end at a given time [s].
-      real(wp), intent(in) :: ratio   !< Its error over what is allowed [-].
-      logical, intent(out) :: accepted   !< Also after the most rejections in a row.
+      real(wp), intent(in) :: dt   !< Step that was tried; shorter than asked where it had to end at a given time [s].
+      real(wp), intent(in) :: ratio   !< Error of the step over what is allowed [-].
+      logical, intent(out) :: accepted   !< Whether the step stands; also after the most rejections in a row.
       real(wp) :: factor, r
 
       ! Where something begins out of rest nothing is there yet to compare its error with.

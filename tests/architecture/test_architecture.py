@@ -10,6 +10,10 @@ LAYERS = ["base", "laws", "rates", "integration"]  # folders of the core, lowest
 
 USE = re.compile(r"^\s*use\b\s*(,\s*(non_)?intrinsic\s*)?(::)?\s*(\w+)\s*(,\s*only\s*:)?", re.IGNORECASE)
 HEAD = re.compile(r"^\s*((?:(?:\w+\s*\([^()]*\)|[\w*]+)\s+)*?)(function|subroutine)\s+(\w+)\s*\(", re.IGNORECASE)
+FRAGMENT = re.compile(r"(what|of|the same|that|how|which|whose|its|their|those|likewise)\b", re.IGNORECASE)
+# Folders whose comments are sentences and noun phrases that stand alone.
+SPOKEN = ("umat/*", "umat/core/*", "common", "materials", "drivers/src", *(f"host/{name}" for name in (
+    "base", "time", "mesh", "element", "contact", "solver")))
 IMPURE = re.compile(r"^\s*(?:if\s*\(.*\)\s*)?(print\b|write\s*\(|read\s*\(|open\s*\(|close\s*\(|flush\b|stop\b|"
                     r"error\s+stop\b|call\s+(?:execute_command_line|exit|abort)\b|allocate\s*\(|save\b)", re.IGNORECASE)
 DECLARATION = re.compile(r"^\s*(integer|real|logical|character|complex|type\s*\(|class\s*\()[^!]*::", re.IGNORECASE)
@@ -38,6 +42,18 @@ def uses(text):
 
 def use_without_only(text):
     return [f"{n}: use {module} without only" for n, module, only in uses(text) if not only]
+
+
+def idle_imports(text):
+    """Names that a use statement brings and no other statement has. Two stand behind every @assert of pFUnit."""
+    brought, had = [], {"anyexceptions", "sourcelocation"}
+    for n, line in code_lines(text):
+        if USE.match(line):
+            brought += [(n, name.split("=>")[0].strip()) for name in re.split(", *", line.rpartition(":")[2])]
+        else:
+            had |= set(re.findall(r"\b[a-z]\w*|(?<=\d_)\w+", line.lower()))
+    return [f"{n}: {name} is imported and not used" for n, name in brought
+            if re.fullmatch(r"\w+", name) and name.lower() not in had]
 
 
 def upward_use(text, name, order, allowed_beside=frozenset()):
@@ -114,6 +130,18 @@ def long_lines(text):
             if len(line) > COLUMNS and not line.lstrip().startswith("@assert")]
 
 
+def fragments(text):
+    """Comments !> and !< that begin in the middle of a sentence, which only what stands around them would complete."""
+    begun, wrong = "", []
+    for n, line in enumerate(text.splitlines(), 1):
+        found = re.match(r"\s*(!>)\s*(.*)", line) or re.search(r"(!<)\s*(.*)", line)
+        alone = line.lstrip().startswith("!")
+        if found and not (alone and found[1] == begun) and FRAGMENT.match(found[2]):
+            wrong.append(f"{n}: {found[2][:60]}")
+        begun = found[1] if found else ""
+    return wrong
+
+
 def idle_tests(text):
     """Tests of a .pf file without an assertion, in themselves or in a procedure of the file that they call."""
     bodies = dict(re.findall(r"^ *(?:recursive )?subroutine (\w+)\(.*?$(.*?)^ *end subroutine \1", text,
@@ -154,6 +182,8 @@ def planted_offences():
     cases = [
         ("use without only", use_without_only, "use mud_a", "use mud_a, only: b"),
         ("continued use", use_without_only, "use, intrinsic :: iso_x", "use, intrinsic :: iso_x, only: &\n  c"),
+        ("idle import", idle_imports, "use a, only: b, &\n   c\nd = b ! c",
+         "use, intrinsic :: a, only: b, c => d\ne = c(1.0_B)"),
         ("upward use", lambda t: upward_use(t, "mud_b", order), "use mud_c, only: x", "use mud_a, only: x"),
         ("inner use", lambda t: inner_use(t, {"mud_a"}), "use mud_a, only: x", "use mud_interface, only: x"),
         ("impure function", not_pure, "real(wp) function f(x)", "pure real(wp) function f(x)"),
@@ -170,6 +200,8 @@ def planted_offences():
         ("implicit typing", not_strict, module.replace(" (type, external)", ""), module),
         ("file name", lambda t: wrong_name(t, "mud_x"), module.replace("mud_x", "mud_y"), module),
         ("long line", long_lines, "x" * (COLUMNS + 1), "x" * COLUMNS),
+        ("fragment of a comment", fragments, "x = 1   !< Of a plate [m].", "x = 1   !< Mass, that\n   !< of a plate."),
+        ("fragment above", fragments, "!> What a step did.\ntype :: t", "!> Log of a step,\n!> of what it did."),
         ("idle test", idle_tests, "@test\nsubroutine a()\nx = 1\nend subroutine a\n",
          "@test\nsubroutine a()\ncall b(1)\nend subroutine a\nsubroutine b(x)\n@assertTrue(x)\nend subroutine b\n")]
     return ([f"{name}: the offence is not seen" for name, rule, bad, _ in cases if not rule(bad)]
@@ -217,6 +249,7 @@ def test_the_sources_keep_the_rules():
         ("the host's view of the library uses nothing of it",
          over(sources("umat/include/*.f90"), lambda t: inner_use(t, set(inside)))),
         ("every use says only", over(library + clients + helpers + suites, use_without_only)),
+        ("every import is used", over(library + clients + helpers + suites, idle_imports)),
         ("core procedures are pure", over(core_files, not_pure)),
         ("core and abi have no module variables, but for what was said already",
          over([file for file in library if file.stem != "mud_once"], module_variables)),
@@ -225,6 +258,7 @@ def test_the_sources_keep_the_rules():
         ("a file and its module share one name", over(modules + suites, wrong_name, True)),
         (f"no line has more than {COLUMNS} columns",
          over(library + clients + helpers + suites + others, long_lines)),
+        ("comments are no fragments", over(sources(*(f"{folder}/*.f90" for folder in SPOKEN)), fragments)),
         ("every test asserts something", over(suites, idle_tests))]
     for name, findings in checks:
         check(name, not findings, shown(findings))

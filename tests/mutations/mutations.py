@@ -290,7 +290,7 @@ CONTACT = [
 # Regions of the host: (title, (file below host, text that stands there once, its replacement), ...).
 PLACES, GIVEN, START = "element/porous_domain.f90", "model/given_pressures.f90", "model/initial_conditions.f90"
 UNKNOWNS, BUILDER = "element/degrees_of_freedom.f90", "model/region_builder.f90"
-SUPPORTS, ABSORBING = "model/boundary_conditions.f90", "model/absorbing_boundaries.f90"
+SUPPORTS, ABSORBING = "model/boundary_conditions.f90", "terms/absorbing.f90"
 
 REGIONS = [
     ("all nodes have pressures", (UNKNOWNS, "has(AT_P_W, carriers) = region%with_w", "has(AT_P_W, domain%mesh%t6(:, e)) = domain%with_w")),
@@ -339,8 +339,8 @@ REGIONS = [
 ]
 
 # What the field does to a boundary: (title, (file below host, text that stands there once, its replacement), ...).
-LIMITS, BALANCE, STAGED = "solver/limited_pressures.f90", "element/porous_balance.f90", "run/ground_stages.f90"
-STRENGTHS, STEP, FRICTION = "model/strength_builder.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
+LIMITS, BALANCE, STAGED = "solver/limited_pressures.f90", "element/porous_balance.f90", "terms/staging.f90"
+STRENGTHS, STEP, FRICTION = "terms/strength.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
 
 FIELD = [
     ("a face draws in water", (LIMITS, "if (constraint%fixed(i) .and. side < -least) then", "if (constraint%fixed(i) .and. side < -huge(least)) then")),
@@ -357,14 +357,14 @@ FIELD = [
     ("gravity at the end of a step is that of its start",
      (STEP, "run%next%gravity = gravity_at(model, run%state%time + dt)", "run%next%gravity = gravity_at(model, run%state%time)")),
     ("what removed ground held up falls at once",
-     (STAGED, "load = load - (1 - growth_at(stage, run, time))*run%at%held_up", "load = load")),
-    ("the weight of new ground is there at once", (STEP, "run%next%growth = growth_at(stage, run, run%state%time + dt)", "run%next%growth = 1.0_wp")),
+     (STAGED, "c%load_1 = c%load_1 - (1 - growth_at(model, solution, now + dt))*self%held_up", "c%load_1 = c%load_1 + 0*dt")),
+    ("the weight of new ground is there at once", (STAGED, "solution%next%growth = growth_at(model, solution, now + dt)", "solution%next%growth = 1.0_wp")),
     ("strength falls by the whole factor in every step",
-     (STRENGTHS, "before = [(factor_at(model, model%strengths(i)%amplitude, from), i=1, size(before))]", "before = 1.0_wp")),
+     (STRENGTHS, "before = [(factor_at(model, list(i)%amplitude, from), i=1, size(before))]", "before = 1.0_wp")),
     ("strength of the start of a step",
-     (STRENGTHS, "after = [(factor_at(model, model%strengths(i)%amplitude, until), i=1, size(after))]", "after = before")),
+     (STRENGTHS, "after = [(factor_at(model, list(i)%amplitude, until), i=1, size(after))]", "after = before")),
     ("every material follows every history of strength",
-     (STRENGTHS, "own = model%strengths%material_name == model%regions(i)%material_name", "own = model%strengths%place > 0")),
+     (STRENGTHS, "own = list%material_name == model%regions(i)%material_name", "own = list%place > 0")),
     ("a history of strength may begin anywhere", (STRENGTHS, "abs(first - 1) > SAME", "first > 2*SAME/SAME")),
     ("the largest value of a strength is not tried", (STRENGTHS, "do i = 1, size(factors)", "do i = 2, size(factors)")),
 ]

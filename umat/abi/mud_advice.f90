@@ -18,7 +18,7 @@ module mud_advice
 
    integer, parameter :: ADVICE_LENGTH = 640
    integer, parameter :: TENSION = 1, TOO_DEEP = 2, ABOVE_LINE = 3, TOO_LOOSE = 4   !< Doubts about a start.
-   integer, parameter :: START_DOUBTS = 4   !< How many there are.
+   integer, parameter :: START_DOUBTS = 4   !< Number of doubts about a start.
    !> A mean stress of a start within this share of p_atm from zero is no tension, but rounding of a free surface [-].
    real(wp), parameter :: NEARLY_NOTHING = 0.01_wp
    !> 1 - delta of docs/theory/material.md section 3.5 beyond which a start is far above the compression line: it is 1
@@ -26,8 +26,9 @@ module mud_advice
    !> F = 2, twice the slope of the line. Compression leads to less: an oedometer to 1.58 (section 7.3) [-].
    real(wp), parameter :: FAR_ABOVE = 2.0_wp
 contains
-   !> Which doubts a point that began raises. `stress` is effective as the host gave it, tension positive, in the unit
-   !> of p_atm; STATEV as the start has filled it. A stress that is doubtful itself is not compared with the line.
+   !> Tells for every doubt about a start whether a point that began raises it. `stress` is effective as the host gave
+   !> it, tension positive, in the unit of p_atm; STATEV as the start has filled it. A stress that is doubtful itself is
+   !> not compared with the line.
    pure function doubts_on_start(par, stress, statev) result(raised)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), statev(:)
@@ -79,7 +80,7 @@ contains
       is_too_loose = statev(S_VOID_RATIO) - statev(S_GAP) >= STIFF_ABOVE .and. statev(S_OPEN) < 0.5_wp
    end function is_too_loose
 
-   !> What that means, behind 'the void ratio is'.
+   !> Sentence on the void ratio of a state beyond which the shear modulus grows again; it follows 'the void ratio is'.
    pure function advice_on_void_ratio(statev) result(text)
       real(wp), intent(in) :: statev(:)
       character(ADVICE_LENGTH/2) :: text
@@ -100,7 +101,7 @@ contains
       crowding = p/compression_image(par, f, statev(S_VOID_RATIO))*(1.0_wp + 3.0_wp*ddot(r, r)/par%m_c**2)
    end function crowding
 
-   !> In the unit of p_atm.
+   !> Largest credible pressure, in the unit of p_atm.
    pure real(wp) function credible_pressure_of(par)
       type(params_t), intent(in) :: par
 

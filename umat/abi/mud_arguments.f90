@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What hosts pass to umat_: NULL pointers, memory that was never set, other orders of components.
+!> Reads what hosts pass to umat_, with NULL pointers, memory that was never set and other orders of components.
 module mud_arguments
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use mud_host_increment, only: suction_change
@@ -7,7 +7,7 @@ module mud_arguments
    use mud_params, only: completed, is_length
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, P_SHEAR_ORDER, &
       S_LAYOUT, S_SUCTION
-   use mud_status, only: fail, mud_status_t, MUD_OK, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
+   use mud_status, only: fail, mud_status_t, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
    use mud_tensor, only: is_finite
    use mud_units, only: stress_unit, LARGEST_STRESS
@@ -22,7 +22,7 @@ module mud_arguments
    !> PREDEF may differ from the suction of STATEV by this share of the larger one, or of an atmosphere: rounding of
    !> single-precision hosts, and of a suction that returns to zero [-, kPa].
    real(wp), parameter :: SAME_SUCTION = 1.0e-6_wp, ATMOSPHERE = 100.0_wp
-   !> What CalculiX enters with in PNEWDT. It passes PREDEF and DPRED that it has never set, and a DROT that its finite
+   !> PNEWDT with which CalculiX enters. It passes PREDEF and DPRED that it has never set, and a DROT that its finite
    !> strains (@ABAQUSNL) do not follow.
    real(wp), parameter :: PNEWDT_OF_CALCULIX = -1.0_wp
    !> TIME(2) up to this share of DTIME is the beginning of the analysis: rounding of sums of times [-].
@@ -40,7 +40,7 @@ module mud_arguments
    type :: suction_t
       real(wp) :: start = 0.0_wp, change = 0.0_wp
       integer :: reading = SUCTION_AS_GIVEN   !< One of SUCTION_*.
-      real(wp) :: predef = 0.0_wp             !< What PREDEF(1) says [kPa].
+      real(wp) :: predef = 0.0_wp             !< PREDEF(1) as the host gave it [kPa].
    end type suction_t
 contains
    !> NULL pointers, NTENS, and counts that would make the arrays unreadable. MUD_NULL_ARGUMENT with the place in
@@ -273,7 +273,7 @@ contains
       integer_at = value
    end function integer_at
 
-   !> The same of a real array. The pointer is NULL or points to a double of C.
+   !> Value of a real argument, 0 where its pointer is NULL; it points to a double of C.
    real(wp) function real_at(pointer)
       type(c_ptr), intent(in) :: pointer
       real(c_double), pointer :: value
@@ -284,7 +284,7 @@ contains
       real_at = value
    end function real_at
 
-   !> The same, 0 where it is far below any physical number.
+   !> Value of a real argument, 0 where its pointer is NULL or the value is far below any physical number.
    real(wp) function value_if_set(pointer)
       type(c_ptr), intent(in) :: pointer
 

@@ -23,7 +23,7 @@ module mud_batch
    public :: mud_init_points, mud_update_points, mud_saturation_points
 
    integer, parameter :: CHUNK = 16   !< Points a thread takes at a time: costs differ from point to point.
-   integer, parameter :: BEGIN = 1, UPDATE = 2, RETAIN = 3   !< What to do with every point.
+   integer, parameter :: BEGIN = 1, UPDATE = 2, RETAIN = 3   !< Tasks, done for every point.
 
    !> struct mud_points of mud.h.
    type, bind(c) :: points_t
@@ -39,7 +39,7 @@ module mud_batch
       type(report_t) :: report
    end type summary_t
 
-   !> The same arrays; what the host left out is not associated.
+   !> Arrays of a call, shaped by its counts; those that the host left out are not associated.
    type :: arrays_t
       integer(c_int), pointer, contiguous :: list(:), material(:), codes(:)
       real(c_double), pointer, contiguous :: stress0(:, :), statev0(:, :), strain(:, :), suction(:), void_ratio(:), &
@@ -131,7 +131,7 @@ contains
       if (c_associated(summary)) call give_summary(summary, total)
    end function run
 
-   !> What is wrong with the counts and the kind of tangent, and which array is missing that a task needs.
+   !> Status of the counts and the kind of tangent of a call, and of an array that the task needs and that is missing.
    pure function fault_of(task, given) result(status)
       integer, intent(in) :: task
       type(points_t), intent(in) :: given
@@ -317,11 +317,11 @@ contains
       none = summary_t(report=failed_report(mud_status_t()))
    end function no_points
 
-   !> What one point adds to a summary; whether it is open its state tells.
+   !> Summary of one point; whether the point is open is told by its state.
    pure function of_point(report, number, raised) result(one)
       type(report_t), intent(in) :: report
       integer, intent(in) :: number   !< From 0.
-      logical, intent(in) :: raised   !< It began, with its mean stress lifted.
+      logical, intent(in) :: raised   !< The point began, with its mean stress lifted.
       type(summary_t) :: one
 
       one = summary_t(pnewdt=report%pnewdt, rates=real(report%n_rate, wp), substeps=real(report%n_substep, wp), &

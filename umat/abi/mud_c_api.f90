@@ -11,9 +11,8 @@ module mud_c_api
       statev_index, statev_name, &
       statev_variable
    use mud_scanning, only: check_curves
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, &
-      MUD_BAD_OPTION, &
-      MUD_BAD_PROPS, MUD_BAD_INPUT, ON_PROPS, ON_STATEV, ON_ARGUMENT
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_INPUT, &
+      ON_ARGUMENT
    use mud_tensor, only: is_finite
    use mud_to_host, only: put, put_real
    use mud_units, only: bounds_for, convert_props
@@ -168,8 +167,8 @@ contains
       mud_bounds = MUD_OK
    end function mud_bounds
 
-   !> The same in the unit of stress of a set of PROPS. MUD_NULL_ARGUMENT without props, MUD_BAD_NPROPS, MUD_BAD_OPTION
-   !> for an unknown index; PROPS are not checked.
+   !> Bounds and preset of an entry of PROPS in the unit of stress of a set of PROPS. MUD_NULL_ARGUMENT without props,
+   !> MUD_BAD_NPROPS, MUD_BAD_OPTION for an unknown index; PROPS are not checked.
    integer(c_int) function mud_bounds_for(props, n_props, index, lower, upper, preset) bind(c, name='mud_bounds_for')
       type(c_ptr), value :: props, lower, upper, preset
       integer(c_int), value :: n_props, index
@@ -190,9 +189,9 @@ contains
       mud_bounds_for = MUD_OK
    end function mud_bounds_for
 
-   !> The same material in another unit of stress. On an error PROPS are untouched. `factor` of the new unit make one of
-   !> the present. MUD_NULL_ARGUMENT, MUD_BAD_INPUT for a factor outside 1e-12 to 1e12, else what read_params says of
-   !> the PROPS before or after.
+   !> Converts the PROPS of a material to another unit of stress, of which `factor` make one of the present. On an error
+   !> PROPS are untouched: MUD_NULL_ARGUMENT, MUD_BAD_INPUT for a factor outside 1e-12 to 1e12, else what read_params
+   !> says of the PROPS before or after.
    integer(c_int) function mud_convert_props(props, n_props, factor) bind(c, name='mud_convert_props')
       type(c_ptr), value :: props
       integer(c_int), value :: n_props

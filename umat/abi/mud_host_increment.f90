@@ -6,7 +6,7 @@ module mud_host_increment
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_SATURATION, S_SUCTION
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_OPTION, MUD_BAD_STATE, ON_ARGUMENT, ON_STATEV
+   use mud_status, only: fail, MUD_OK, MUD_BAD_OPTION, MUD_BAD_STATE, ON_ARGUMENT, ON_STATEV
    use mud_tensor, only: is_finite
    use mud_total, only: effective_stress, total_stress, total_blocks
    use mud_trace, only: trace_t
@@ -46,7 +46,7 @@ contains
    pure subroutine host_increment(par, stress, statev, d_strain, suction, options, output, report, trace)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), d_strain(6)
-      real(wp), intent(in), contiguous :: statev(:)   !< Of at least the numbers without hysteresis.
+      real(wp), intent(in), contiguous :: statev(:)   !< STATEV, at least the entries of a point without hysteresis.
       real(wp), intent(in) :: suction             !< At the end.
       integer, intent(in) :: options              !< A kind of tangent, perhaps with WITH_TOTAL_STRESS.
       type(output_t), intent(inout) :: output
@@ -84,7 +84,7 @@ contains
       if (never_began) never_began = abs(statev(S_LAYOUT)) <= 0.0_wp
    end function never_began
 
-   !> What is not finite passes through: the kernel refuses it.
+   !> Change of suction between two values; a value that is not finite passes through, for the kernel to refuse it.
    pure real(wp) function suction_change(from, to) result(change)
       real(wp), intent(in) :: from, to
 

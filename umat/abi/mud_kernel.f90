@@ -12,10 +12,9 @@ module mud_kernel
    use mud_start, only: initial_state
    use mud_rates, only: stress_ratio
    use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
-      S_SUCTION, S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, &
-      S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
+      S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
    use mud_scanning, only: check_curves, check_saturation
-   use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size, E_LOWER, E_UPPER
+   use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
    use mud_tensor, only: is_finite, all_finite, norm, rotate
@@ -46,7 +45,7 @@ module mud_kernel
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type report_t
 
-   !> What a successful update returns, UMAT conventions.
+   !> Results of a successful update, UMAT conventions.
    type :: output_t
       real(wp) :: stress(6), statev(NSTATV)
       integer :: n_statev   !< So many of statev are set.
@@ -74,8 +73,8 @@ contains
       end if
    end subroutine kernel_init
 
-   !> The same for checked parameters. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV; MUD_BAD_STATE
-   !> for a saturation without hysteresis; otherwise the codes of initialise.
+   !> Initialises a point of checked parameters. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV;
+   !> MUD_BAD_STATE for a saturation without hysteresis; otherwise the codes of initialise.
    pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report, saturation)
       type(params_t), intent(in) :: par
       real(wp), intent(inout) :: stress(6)
@@ -98,7 +97,8 @@ contains
       statev(1:statev_size(par%options_t)) = packed(1:statev_size(par%options_t))
    end subroutine kernel_begin
 
-   !> Without hysteresis S_w is a function of suction and void ratio: another one of a start would be lost in silence.
+   !> Refuses a degree of saturation of the start without hysteresis: S_w is a function of suction and void ratio there,
+   !> and another one would be lost in silence.
    pure subroutine refuse_preset(preset, status)
       real(wp), intent(in) :: preset
       type(mud_status_t), intent(inout) :: status
@@ -238,9 +238,10 @@ contains
       end if
    end subroutine read_state
 
-   !> What pack_state does not write: totals of the counters, and numbers of options that are off.
+   !> Copies the entries of STATEV that pack_state does not write: totals of the counters, and numbers of options that
+   !> are off.
    pure subroutine keep_totals(n, from, to)
-      integer, intent(in) :: n   !< As of statev_size.
+      integer, intent(in) :: n   !< Number of entries of STATEV, as of statev_size.
       real(wp), intent(in), contiguous :: from(:)
       real(wp), intent(inout), contiguous :: to(:)
 
@@ -296,7 +297,7 @@ contains
                                            SQRT_3_2*largest)
    end subroutine check_strength
 
-   !> From the core's results to UMAT conventions; a result that is not finite is a failure.
+   !> Writes the core's results in UMAT conventions; a result that is not finite is a failure.
    pure subroutine write_output(options, state, blocks, counters, has_tangent, output, status)
       type(options_t), intent(in) :: options
       type(state_t), intent(in) :: state

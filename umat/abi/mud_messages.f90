@@ -16,7 +16,7 @@ module mud_messages
    integer, parameter :: MESSAGE_LENGTH = 320
    character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
 contains
-   !> What a code means and what to do. An unknown code has a sentence too.
+   !> Sentence that says what a code means and what to do. An unknown code has a sentence too.
    pure function status_text(code) result(text)
       integer, intent(in) :: code
       character(MESSAGE_LENGTH) :: text
@@ -63,8 +63,8 @@ contains
       end select
    end function status_text
 
-   !> The same with the place, the value and the allowed range that a report carries. Values in the unit that the report
-   !> has; nothing is refused.
+   !> Sentence of the code of a report, with the place, the value and the allowed range. Values in the unit that the
+   !> report has; nothing is refused.
    pure function report_text(report) result(text)
       type(report_t), intent(in) :: report
       character(MESSAGE_LENGTH) :: text
@@ -126,7 +126,8 @@ contains
       end select
    end function report_text
 
-   !> What is wrong with DROT. Entries count by columns; 0 stands for all, 10 for the determinant.
+   !> Part of a sentence that says what is wrong with DROT. Entries count by columns; 0 stands for all, 10 for the
+   !> determinant.
    pure function rotation_text(report) result(text)
       type(report_t), intent(in) :: report
       character(MESSAGE_LENGTH) :: text

@@ -24,12 +24,12 @@ module mud_mfront
    public :: mechanical_3d, mechanical_plane, mechanical_axial, mechanical_generalised, mechanical_1d, unsaturated_3d, &
              unsaturated_plane, unsaturated_axial, unsaturated_generalised, unsaturated_1d
 
-   integer(c_int), parameter :: FAILED = -1, RELIABLE = 1     !< What MGIS understands.
+   integer(c_int), parameter :: FAILED = -1, RELIABLE = 1     !< Outcomes that MGIS understands.
    integer(c_int), parameter :: MESSAGE_ROOM = 512            !< Characters behind error_message.
    real(wp), parameter :: SHEAR = sqrt(2.0_wp)                !< Mandel's factor.
    real(wp), parameter :: MANDEL(6) = [1.0_wp, 1.0_wp, 1.0_wp, SHEAR, SHEAR, SHEAR]
    real(wp), parameter :: WITH_SPEED_OF_SOUND = 50.0_wp       !< K(1) above it asks for the speed of sound too.
-   character(*), parameter :: DOOR = 'MFront'                 !< What a sentence calls the interface.
+   character(*), parameter :: DOOR = 'MFront'                 !< Name of the interface in sentences.
    integer, parameter :: NONE = 0, ELASTIC = 1, CONTINUUM = 2, CONSISTENT = 3
    !> S_w of a state may differ from that of its suction by this, what a text of seven digits leaves [-].
    real(wp), parameter :: SAME_SATURATION = 1.0e-6_wp
@@ -62,28 +62,28 @@ contains
       mechanical_3d = integrate(view, 6, .false.)
    end function mechanical_3d
 
-   !> As mechanical_3d for plane strain: four components 11, 22, 33, 12.
+   !> Integrates a point in plane strain as mechanical_3d does: four components 11, 22, 33, 12.
    integer(c_int) function mechanical_plane(view) bind(c, name='MUD_PlaneStrain')
       type(view_t), intent(inout) :: view
 
       mechanical_plane = integrate(view, 4, .false.)
    end function mechanical_plane
 
-   !> As mechanical_3d for axial symmetry: four components.
+   !> Integrates a point in axial symmetry as mechanical_3d does: four components.
    integer(c_int) function mechanical_axial(view) bind(c, name='MUD_Axisymmetrical')
       type(view_t), intent(inout) :: view
 
       mechanical_axial = integrate(view, 4, .false.)
    end function mechanical_axial
 
-   !> As mechanical_3d for generalised plane strain: four components.
+   !> Integrates a point in generalised plane strain as mechanical_3d does: four components.
    integer(c_int) function mechanical_generalised(view) bind(c, name='MUD_GeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view
 
       mechanical_generalised = integrate(view, 4, .false.)
    end function mechanical_generalised
 
-   !> As mechanical_3d for axial symmetry in one dimension: three direct components.
+   !> Integrates a point in axial symmetry in one dimension as mechanical_3d does: three direct components.
    integer(c_int) function mechanical_1d(view) bind(c, name='MUD_AxisymmetricalGeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view
 
@@ -98,28 +98,28 @@ contains
       unsaturated_3d = integrate(view, 6, .true.)
    end function unsaturated_3d
 
-   !> As unsaturated_3d for plane strain: four components 11, 22, 33, 12.
+   !> Integrates a point in plane strain as unsaturated_3d does: four components 11, 22, 33, 12.
    integer(c_int) function unsaturated_plane(view) bind(c, name='MUD_StressSaturation_PlaneStrain')
       type(view_t), intent(inout) :: view
 
       unsaturated_plane = integrate(view, 4, .true.)
    end function unsaturated_plane
 
-   !> As unsaturated_3d for axial symmetry: four components.
+   !> Integrates a point in axial symmetry as unsaturated_3d does: four components.
    integer(c_int) function unsaturated_axial(view) bind(c, name='MUD_StressSaturation_Axisymmetrical')
       type(view_t), intent(inout) :: view
 
       unsaturated_axial = integrate(view, 4, .true.)
    end function unsaturated_axial
 
-   !> As unsaturated_3d for generalised plane strain: four components.
+   !> Integrates a point in generalised plane strain as unsaturated_3d does: four components.
    integer(c_int) function unsaturated_generalised(view) bind(c, name='MUD_StressSaturation_GeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view
 
       unsaturated_generalised = integrate(view, 4, .true.)
    end function unsaturated_generalised
 
-   !> As unsaturated_3d for axial symmetry in one dimension: three direct components.
+   !> Integrates a point in axial symmetry in one dimension as unsaturated_3d does: three direct components.
    integer(c_int) function unsaturated_1d(view) bind(c, name= &
                                                      'MUD_StressSaturation_AxisymmetricalGeneralisedPlaneStrain')
       type(view_t), intent(inout) :: view
@@ -127,8 +127,8 @@ contains
       unsaturated_1d = integrate(view, 3, .true.)
    end function unsaturated_1d
 
-   !> What the host asks for in K(1): below -0.5 a tangent of the present state alone, otherwise an update. On failure
-   !> the message and the time-step factor are written and nothing else.
+   !> Does what the host asks for in K(1): below -0.5 a tangent of the present state alone, otherwise an update. On
+   !> failure the message and the time-step factor are written and nothing else.
    integer(c_int) function integrate(view, n, unsaturated) result(outcome)
       type(view_t), intent(inout) :: view
       integer, intent(in) :: n              !< Components of a tensor: 6, 4 or 3.
@@ -281,7 +281,7 @@ contains
       k((n + 1)**2) = -output%dsw_dpc
    end subroutine write_blocks
 
-   !> Of the elastic pressure wave, where the host gives a density.
+   !> Writes the speed of the elastic pressure wave where the host gives a density.
    subroutine write_speed_of_sound(view, par, output)
       type(view_t), intent(in) :: view
       type(params_t), intent(in) :: par

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Which messages have been printed, and which process has used threads: all that the library remembers between calls.
-!> A message of each kind goes to standard error once a process, whichever thread comes first. Nothing else reads the
-!> memory, so no answer depends on it. Compiled with OpenMP for its atomic operations alone, which need no run-time
-!> library; without OpenMP two threads that fail at the same instant may both print. A forked process inherits what was
-!> said before; the ranks of MPI are processes of their own.
+!> Memory of the library between calls: which messages have been printed, and which process has used threads. A message
+!> of each kind goes to standard error once a process, whichever thread comes first. Nothing else reads the memory, so
+!> no answer depends on it. Compiled with OpenMP for its atomic operations alone, which need no run-time library;
+!> without OpenMP two threads that fail at the same instant may both print. A forked process inherits what was said
+!> before; the ranks of MPI are processes of their own.
 module mud_once
    use, intrinsic :: iso_c_binding, only: c_char, c_funloc, c_funptr, c_int, c_size_t
    use, intrinsic :: iso_fortran_env, only: int32

@@ -9,7 +9,7 @@ module mud_one_point
    use mud_messages, only: report_text
    use mud_prepared, only: prepared_t, find_prepared
    use mud_refusals, only: place_t, remark_on_begun, remark_on_void_ratio
-   use mud_registry, only: NSTATV_WITHOUT_HYSTERESIS, S_SATURATION
+   use mud_registry, only: S_SATURATION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
       ON_STATEV
@@ -24,7 +24,7 @@ module mud_one_point
       real(c_double) :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc, s_w
    end type blocks_t
 
-   !> What the pointers of a host lead to.
+   !> Material, state and strain that the pointers of a host lead to.
    type :: start_t
       type(prepared_t), pointer :: material
       real(c_double), pointer, contiguous :: stress(:), statev(:)
@@ -136,8 +136,8 @@ contains
       mud_trace_increment = report%status
    end function mud_trace_increment
 
-   !> What an increment starts from, or why it cannot: MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_PREPARED,
-   !> MUD_BAD_NSTATV. Where slopes of the present state are asked for a NULL strain is none.
+   !> Finds the material, state and strain of an increment, or why it cannot begin: MUD_NULL_ARGUMENT, MUD_BAD_OPTION,
+   !> MUD_NOT_PREPARED, MUD_BAD_NSTATV. Where slopes of the present state are asked for a NULL strain is none.
    subroutine find_start(storage, stress0, statev0, n_statev, dstrain, tangent, start, status)
       type(c_ptr), intent(in) :: storage, stress0, statev0, dstrain
       integer(c_int), intent(in) :: n_statev, tangent

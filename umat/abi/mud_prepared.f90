@@ -16,19 +16,19 @@ module mud_prepared
    private
    public :: prepared_t, find_prepared, find_materials, mud_prepared_size, mud_prepared_statev, mud_prepare
 
-   !> What the caller's storage holds. The marks at both ends tell it from storage that was never prepared, was prepared
-   !> by a library with other parameters, or was written over at an edge.
+   !> Contents of the caller's storage. The marks at both ends tell it from storage that was never prepared, was
+   !> prepared by a library with other parameters, or was written over at an edge.
    type :: prepared_t
       integer(int64) :: head = 0
       type(params_t) :: par
-      real(wp) :: props(NPROPS)   !< What the parameters were read from.
+      real(wp) :: props(NPROPS)   !< PROPS that the parameters were read from.
       integer(int64) :: tail = 0
    end type prepared_t
 
    integer(int64), parameter :: MARK = int(z'4D55447072657061', int64)   !< "MUDprepa"
    real(wp), parameter :: BITS_OF_A_DOUBLE = storage_size(1.0_wp)
 contains
-   !> How many doubles the storage of a prepared material takes.
+   !> Number of doubles that the storage of a prepared material takes.
    pure integer(c_int) function mud_prepared_size() bind(c, name='mud_prepared_size')
       type(prepared_t) :: material
 
@@ -115,7 +115,7 @@ contains
       end if
    end subroutine find_materials
 
-   !> Of this library: another number of parameters is another mark.
+   !> Mark of this library in a storage; a library with another number of parameters has another one.
    pure integer(int64) function mark_of()
       mark_of = MARK + int(mud_prepared_size(), int64)
    end function mark_of

@@ -25,13 +25,13 @@ module mud_refusals
 
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
-      character(17) :: door = 'umat_'   !< Which of the library's entries was called.
+      character(17) :: door = 'umat_'   !< Name of the library's entry that was called.
       type(c_ptr) :: step = c_null_ptr, increment = c_null_ptr, element = c_null_ptr, point = c_null_ptr
    end type place_t
 
    !> A failed increment is saved here, if the environment names a folder.
    character(*), parameter :: SAVE_VARIABLE = 'MUD_SAVE_FAILED'
-   !> What a refusal does where PNEWDT is NULL; `keep` leaves STRESS as it is.
+   !> Variable of the environment that says what a refusal does where PNEWDT is NULL; `keep` leaves STRESS as it is.
    character(*), parameter :: KEEP_VARIABLE = 'MUD_NO_PNEWDT'
    !> A PNEWDT below it is memory that was never set, no request of another point [-].
    real(wp), parameter :: SMALLEST_REQUEST = 1.0e-6_wp
@@ -90,10 +90,10 @@ contains
       factor = report%pnewdt
    end subroutine ask_for_a_cut
 
-   !> Without PNEWDT a host would continue with the old stress; a NaN stops it.
+   !> Sets the stress to NaN: without PNEWDT a host would continue with the old stress, and a NaN stops it.
    subroutine set_to_nan(stress, ntens)
       type(c_ptr), intent(in) :: stress
-      integer, intent(in) :: ntens   !< As the host gives it: it may be what is wrong.
+      integer, intent(in) :: ntens   !< NTENS as the host gives it; it may be what is wrong.
       real(c_double), pointer, contiguous :: components(:)
 
       call c_f_pointer(stress, components, [min(max(ntens, 1), 6)])
@@ -219,7 +219,7 @@ contains
       if (report%status == MUD_OK) call remark_on_begun(par, stress, filled, place)
    end subroutine remark_on_start
 
-   !> The same about a point that began: arguments of doubts_on_start.
+   !> Says once a process what is doubtful about a point that began: arguments of doubts_on_start.
    subroutine remark_on_begun(par, stress, statev, place)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), statev(:)
@@ -246,7 +246,8 @@ contains
 
    !> Says what an update that passed has led to: where its state is, that has no meaning.
    subroutine remark_on_end(stress, statev, place)
-      real(wp), intent(in) :: stress(6), statev(:)   !< As in remark_on_pressure and remark_on_void_ratio.
+      real(wp), intent(in) :: stress(6), statev(:)   !< State after the update, as in remark_on_pressure and
+                                                     !< remark_on_void_ratio.
       type(place_t), intent(in) :: place
 
       if (.not. all(is_finite(stress))) return   ! as vumat_ leaves a refused point
@@ -267,7 +268,7 @@ contains
          place)
    end subroutine remark_on_pressure
 
-   !> Where an increment is, as far as the host says.
+   !> Place of an increment in the analysis, as far as the host says it.
    function place_text(place) result(text)
       type(place_t), intent(in) :: place
       character(100) :: text

@@ -43,8 +43,8 @@ contains
       call put_real(sat%ds_de, ds_de)
    end function mud_saturation
 
-   !> The same for a point with a past: its STATEV tells the void ratio and, with hysteresis, from which S_w at which
-   !> suction it goes on. The slope is that against void ratio [-]. MUD_BAD_INPUT, MUD_BAD_STATE.
+   !> Degree of saturation of a point with a past: its STATEV tells the void ratio and, with hysteresis, from which S_w
+   !> at which suction it goes on. The slope is that against void ratio [-]. MUD_BAD_INPUT, MUD_BAD_STATE.
    !> docs/theory/material.md sections 2.1, 2.1.1.
    pure subroutine state_saturation(par, statev, suction, sat, status)
       type(params_t), intent(in) :: par

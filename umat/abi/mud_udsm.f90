@@ -4,7 +4,7 @@
 !> stress. Texts are Pascal's: a byte with the length, then the letters, into 256 bytes of the host. An increment cannot
 !> be cut by such a host, so a hard one is taken in pieces.
 module mud_udsm
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_associated, c_f_pointer, c_loc
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_associated, c_f_pointer
    use mud_arguments, only: has_past
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_init, failed_report
    use mud_kinds, only: wp
@@ -20,11 +20,11 @@ module mud_udsm
    private
    public :: user_mod, model_count, model_name, param_count, param_name, param_unit, state_count, state_name, state_unit
 
-   integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Of the host's components; its own inverse.
+   integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Order of the host's components; its own inverse.
    integer, parameter :: ELASTIC = 1                     !< Tangent kind.
    integer, parameter :: BEGIN_STATE = 1, STRESSES = 2, STIFFNESS = 3, HOW_MANY = 4, ATTRIBUTES = 5, &
                          ELASTIC_STIFFNESS = 6
-   integer(c_int), parameter :: TENSION_POINT = 2, HARDENING_POINT = 5   !< What IPL says.
+   integer(c_int), parameter :: TENSION_POINT = 2, HARDENING_POINT = 5   !< Values of IPL.
    !> Poisson's ratio by which undrained soil is given water [-]; 0.5 would be singular.
    real(wp), parameter :: UNDRAINED = 0.495_wp
    !> A mean stress below this share of an atmosphere is no initial stress: it comes later [-].

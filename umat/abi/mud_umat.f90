@@ -52,7 +52,7 @@ contains
       end associate
    end subroutine umat
 
-   !> What a host gives that is read otherwise than it may be meant: said once a process, and nothing changes.
+   !> Says once a process what a host gives that is read otherwise than it may be meant; changes nothing.
    subroutine look_at_host(statev, stran, dstran, time, dtime, drot, pnewdt, dfgrd1, place)
       type(c_ptr), intent(in) :: statev, stran, dstran, time, dtime, drot, pnewdt, dfgrd1
       type(place_t), intent(in) :: place
@@ -140,7 +140,7 @@ contains
       real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(in) :: stress(6)
       real(wp), intent(in), contiguous :: statev(:)
-      integer, intent(in) :: order(:)   !< As many as NTENS.
+      integer, intent(in) :: order(:)   !< Order of the host's components, NTENS of them.
       type(c_ptr), intent(in) :: pnewdt, ddsdde
       type(output_t) :: output
       type(report_t) :: report

@@ -24,7 +24,7 @@ module mud_vumat
    public :: vumat
 
    integer, parameter :: CHUNK = 32                      !< Points that are copied and updated together.
-   integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Of the host's components; its own inverse.
+   integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Order of the host's components; its own inverse.
    real(wp), parameter :: ENGINEERING(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
    integer, parameter :: NONE = 0, ELASTIC = 1           !< Kinds of tangent.
 
@@ -95,7 +95,7 @@ contains
       end associate
    end subroutine vumat
 
-   !> What must be given, in the host's order, and what counts the arrays allow.
+   !> Finds the counts and arrays of a call, in the host's order, and refuses what is missing or does not fit.
    subroutine find_block(counts, arrays, points, status)
       type(c_ptr), intent(in) :: counts(5), arrays(6)
       type(block_t), intent(out) :: points
@@ -199,7 +199,7 @@ contains
       type(chunk_t), intent(in) :: old
       integer, intent(in) :: i
       real(wp), intent(out) :: stress(6)
-      real(wp), intent(inout) :: state(:)   !< As many as a point has.
+      real(wp), intent(inout) :: state(:)   !< State variables, as many as a point has.
       type(output_t) :: output
       type(report_t) :: report
       integer :: m

@@ -8,11 +8,11 @@ program mud_write_tables
       statev_variable
    implicit none (type, external)
    integer, parameter :: LONG = 64
-   !> Before the names of state variables: hosts have a `saturation` and a `void_ratio` of their own.
+   !> Prefix of the names of state variables: hosts have a `saturation` and a `void_ratio` of their own.
    character(*), parameter :: PREFIX = 'mud_'
    character(*), parameter :: HYPOTHESES(5) = [character(36) :: 'Tridimensional', 'PlaneStrain', 'Axisymmetrical', &
       'GeneralisedPlaneStrain', 'AxisymmetricalGeneralisedPlaneStrain']
-   !> What MGIS calls the types of a variable.
+   !> Numbers of MGIS for the types of a variable.
    integer, parameter :: SCALAR = 0, SYMMETRIC_TENSOR = 1
    integer, parameter :: GENERAL_BEHAVIOUR = 0, STRAIN_BASED_BEHAVIOUR = 1, NO_KINEMATIC = 0, SMALL_STRAIN = 1
 
@@ -46,7 +46,7 @@ contains
    !> Everything but the functions, which mud_mfront.f90 holds, of one behaviour.
    subroutine behaviour(name, description, kind, kinematic, gradients, forces, types, blocks)
       character(*), intent(in) :: name, description, gradients(:), forces(:), blocks(:)
-      integer, intent(in) :: kind, kinematic, types(:)   !< Of gradients, and of forces.
+      integer, intent(in) :: kind, kinematic, types(:)   !< Types of the gradients, and of the forces.
       character(LONG) :: none(0)
       integer :: no(0), k
 

@@ -4,7 +4,7 @@
 module soft_laws
    use kinds, only: wp
    use material_elastic, only: elastic_t, isotropic
-   use material_point, only: material_t, response_t, report_t
+   use material_point, only: response_t, report_t
    use model_types, only: model_t
    implicit none (type, external)
    private

@@ -32,7 +32,8 @@ module mud_params
    integer, parameter :: WHOLE_ENTRIES(*) = pack(PROPERTIES%index, PROPERTIES%kind /= KIND_REAL)
    real(wp), parameter :: NEARLY_WHOLE = 1.0e-9_wp   !< A number this close to a whole one is it [-].
 
-   integer, parameter :: MAX_LEAST = 4   !< Of each direction; none or one in every set tried.
+   integer, parameter :: MAX_LEAST = 4   !< Largest number of least offsets of each direction; every set tried has none
+                                         !< or one.
 
    !> A scanning branch of S_w, docs/theory/material.md section 2.1.1: the suction y of a main curve at the same S_w
    !> follows y**q = x**q + offset**q. Suctions are ln(x/P_a).
@@ -40,11 +41,11 @@ module mud_params
       logical :: dries
       real(wp) :: log_x, s_w   !< Where it begins [-].
       real(wp) :: log_offset   !< q ln(offset/P_a), NO_OFFSET: no offset [-].
-      real(wp) :: share        !< By which its changes are scaled so that it ends where its loop closes [-].
+      real(wp) :: share        !< Factor on its changes, so that it ends where its loop closes [-].
       logical :: straight      !< In ln x, of slope `share`: S_w hardly changes, and a scale would be rounding.
    end type branch_t
 
-   !> Where S_w goes: along the last branch, which is limited by those that it left. docs/theory/material.md 2.1.1.
+   !> Way of S_w along the last branch, which is limited by those that it left. docs/theory/material.md 2.1.1.
    type :: scanning_t
       logical :: acts
       integer :: n              !< Number of branches, at least 1; the last is the present one.
@@ -64,7 +65,7 @@ module mud_params
    type(branch_t), parameter :: NO_BRANCH = branch_t(.true., 0.0_wp, 0.0_wp, NO_OFFSET, 1.0_wp, .false.)
    real(wp), parameter :: WETTING_SHARE = 0.5_wp   !< P_aw of P_a where it is not given [-].
 
-   !> What a point has more numbers of STATEV with.
+   !> Options with which a point has more numbers of STATEV.
    type :: options_t
       logical :: hysteresis   !< Hydraulic hysteresis.
       logical :: preloading   !< Cyclic preloading.
@@ -89,16 +90,17 @@ module mud_params
       !> substeps begin, elastic rates replace missing directions, substeps of the minimum size are accepted.
       logical :: guarded
       integer :: scheme, tangent, max_substeps
-      integer :: shear_order   !< Of umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
+      integer :: shear_order   !< Order of shear in umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
       real(wp) :: tolerance, h_min
-      !> What a substep of modified Euler is of one of third order where both have the error that they may have, and the
-      !> rates change by their own size within the same strain; docs/theory/integration.md section 2 [-].
+      !> Size of a substep of modified Euler over that of one of third order where both have the error that they may
+      !> have, and the rates change by their own size within the same strain; docs/theory/integration.md section 2 [-].
       real(wp) :: second_share
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
-      real(wp) :: p_aw, n_w, m_w, b_d, b_w   !< Those left to others have their values.
+      real(wp) :: p_aw, n_w, m_w, b_d, b_w   !< Parameters of the wetting curve and of hysteresis; those that are left
+                                             !< to others have their values.
       real(wp) :: log_wetting                !< ln(P_aw/P_a) [-].
       type(least_t) :: least
-      type(scanning_t) :: scanning           !< Of a phase.
+      type(scanning_t) :: scanning           !< Branch that a phase of an increment follows.
       real(wp) :: c_chi, zeta_chi, s_chi     !< Read with preloading.
       real(wp) :: c_ell, ell_max, p_ell, r_ell   !< Read with fluidity.
       real(wp) :: c4        !< c**4, for the Lode function [-].
@@ -120,7 +122,7 @@ contains
       is_length = any(n == [NPROPS, NPROPS_WITHOUT_FLUIDITY, NPROPS_WITHOUT_PRELOADING, NPROPS_WITHOUT_HYSTERESIS])
    end function is_length
 
-   !> What PROPS, of any length and not yet checked, switch on.
+   !> Options that PROPS, of any length and not yet checked, switch on.
    pure type(options_t) function options_of(props) result(options)
       real(wp), intent(in) :: props(:)
 
@@ -314,7 +316,7 @@ contains
       end do
    end subroutine check_bounds
 
-   !> Without these the main wetting curve is above the main drying curve at small or at large suctions. In between it
+   !> Checks that the main wetting curve is below the main drying curve at small and at large suctions. In between it
    !> takes more than a comparison: see check_curves of mud_scanning.
    pure subroutine check_wetting(props, status)
       real(wp), intent(in) :: props(NPROPS)
@@ -329,8 +331,8 @@ contains
       end if
    end subroutine check_wetting
 
-   !> The same verdict on finite PROPS in kPa, up to hysteresis, without a branch per entry: updates with good PROPS end
-   !> here.
+   !> Whether finite PROPS in kPa, up to hysteresis, are within their ranges, without a branch per entry: updates with
+   !> good PROPS end here.
    pure logical function no_fault(props)
       real(wp), intent(in) :: props(P_HYSTERESIS)
 

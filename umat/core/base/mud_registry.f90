@@ -49,7 +49,7 @@ module mud_registry
       real(wp) :: upper        !< Largest allowed value, likewise.
       real(wp) :: default      !< Value of the paper, or ours; likewise.
       character(12) :: origin  !< paper, mended, rebuilt, ours or numerical.
-      character(112) :: meaning   !< Of a KIND_OPTION without its words, which are OPTIONS.
+      character(112) :: meaning   !< Meaning; that of a KIND_OPTION is without its words, which are OPTIONS.
    end type property_t
 
    !> A value of a KIND_OPTION parameter, and the word for it.
@@ -68,8 +68,8 @@ module mud_registry
       logical :: rotates       !< DROT acts on it.
       character(12) :: origin
       character(112) :: meaning
-      character(20) :: initial !< How it is initialised.
-      character(64) :: evolution !< How and when it changes.
+      character(20) :: initial !< Word for its value at the start.
+      character(64) :: evolution !< Sentence on how and when it changes.
    end type variable_t
 
    integer, parameter :: P_K_0 = 1
@@ -124,9 +124,9 @@ module mud_registry
    !> PROPS may end before hysteresis: it is off, and what follows has its default. Hosts with PROPS of that length, or
    !> with no room for more (PLAXIS: 50), go on as they are.
    integer, parameter :: NPROPS_WITHOUT_HYSTERESIS = P_HYSTERESIS - 1
-   !> Likewise before cyclic preloading.
+   !> Number of PROPS before cyclic preloading.
    integer, parameter :: NPROPS_WITHOUT_PRELOADING = P_C_CHI - 1
-   !> Likewise before the fluidity.
+   !> Number of PROPS before the fluidity.
    integer, parameter :: NPROPS_WITHOUT_FLUIDITY = P_C_ELL - 1
 
    ! Places in STATEV, each behind the one before; a tensor takes six.
@@ -466,7 +466,7 @@ module mud_registry
       option_t(P_TANGENT, 2, 'continuum'), &
       option_t(P_TANGENT, 3, 'consistent')]
 contains
-   !> What a parameter means, with its values and words if it is an option: 'tangent that umat_ returns: 0 none, ...'.
+   !> Meaning of a parameter, with its values and words if it is an option: 'tangent that umat_ returns: 0 none, ...'.
    pure function property_meaning(index) result(text)
       integer, intent(in) :: index   !< From 1 to NPROPS, not checked.
       character(200) :: text

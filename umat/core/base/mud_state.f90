@@ -21,10 +21,11 @@ module mud_state
    real(wp), parameter :: E_OPEN = 1.0e4_wp   !< Largest void ratio with a gap [-].
 
    real(wp), parameter :: LARGEST_RATIO = 1.0e11_wp       !< A stress ratio beyond it is no state [-].
-   real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Likewise; z_max is at most 1e3 [-].
+   real(wp), parameter :: LARGEST_FABRIC = 1.0e6_wp       !< Magnitude of the fabric; z_max is at most 1e3 [-].
    real(wp), parameter :: LARGEST_FROM_CENTRE = 1.0_wp    !< Strain from the elastic domain's centre; rho_e <= 0.01 [-].
    real(wp), parameter :: LARGEST_LOG_SUCTION = 1.0e3_wp  !< ln of a double [-].
-   real(wp), parameter :: LARGEST_CONTRACTION = 1.0e6_wp  !< Of all processes: strains of 1e9 increments of 1e-3 [-].
+   real(wp), parameter :: LARGEST_CONTRACTION = 1.0e6_wp  !< Contraction of all processes: strains of 1e9 increments of
+                                                          !< 1e-3 [-].
    real(wp), parameter :: LARGEST_FLUIDITY = 1.0e4_wp     !< ell_max is at most that [-].
    real(wp), parameter :: LARGEST_MARGIN = 1.0e3_wp       !< ln of a double [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
@@ -34,18 +35,18 @@ module mud_state
 
    !> A loading process that was interrupted (rule return_point).
    type :: interrupted_t
-      real(wp) :: r_in(6)      !< its memory [-]
-      real(wp) :: direction(6) !< in which it moved r [-]
-      real(wp) :: target       !< r:direction where it was left [-]
-      real(wp) :: chi          !< its contraction (cyclic preloading) [-]
+      real(wp) :: r_in(6)      !< memory of the process [-]
+      real(wp) :: direction(6) !< direction in which it moved r [-]
+      real(wp) :: target       !< r:direction where the process was left [-]
+      real(wp) :: chi          !< contraction of the process (cyclic preloading) [-]
    end type interrupted_t
 
-   !> What the point remembers of its loading processes.
+   !> Memory of the loading processes of a point.
    type :: memory_t
       real(wp) :: r_in(6)      !< stress ratio where the present process began
       real(wp) :: r_before(6)  !< memory of the process before (rule threshold)
-      real(wp) :: direction(6) !< in which the present process moves r (rule return_point)
-      real(wp) :: target       !< how far it has come, r:direction
+      real(wp) :: direction(6) !< direction in which the present process moves r (rule return_point)
+      real(wp) :: target       !< r:direction that the present process has reached
       real(wp) :: eps_q_p      !< plastic shear of the present process
       real(wp) :: x_before     !< J
       real(wp) :: x_running    !< (r - r_in):n of the last accepted rate with x >= 0
@@ -55,7 +56,7 @@ module mud_state
       type(interrupted_t) :: interrupted(MAX_INTERRUPTED)   !< The oldest first; beyond depth without meaning.
    end type memory_t
 
-   !> Where the modified suction x = p_c e^Omega turned (hysteresis), and where it goes.
+   !> Turns of the modified suction x = p_c e^Omega (hysteresis), and its present direction.
    type :: turns_t
       logical :: dries             !< The present direction.
       integer :: depth             !< Number of turning points.
@@ -69,7 +70,7 @@ module mud_state
       real(wp) :: z(6)         !< fabric [-]
       real(wp) :: e            !< void ratio, with the gap [-]
       real(wp) :: gap          !< part of it that is gap between grains that have parted [-]
-      real(wp) :: margin       !< of the isotropic memory, u <= 0 [-]
+      real(wp) :: margin       !< margin of the isotropic memory, u <= 0 [-]
       real(wp) :: fluidity     !< 0 without that option [-]
       real(wp) :: p_c          !< suction [kPa]
       real(wp) :: s_w          !< degree of saturation [-]
@@ -82,7 +83,7 @@ module mud_state
       type(turns_t) :: turns   !< With hysteresis; otherwise without meaning.
    end type state_t
 
-   !> What an update did.
+   !> Counters of what an update did.
    type :: counters_t
       integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, hysteresis = 0, &
                  iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, cleared = 0
@@ -293,7 +294,7 @@ contains
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), lower, upper)
    end subroutine require
 
-   !> The same of a number that is finite and must be whole: the range that the status has holds it.
+   !> Requires that a finite number of STATEV is whole; the status names the range that holds it.
    pure subroutine require_whole(statev, entry, status)
       real(wp), intent(in) :: statev(:)
       integer, intent(in) :: entry
@@ -304,7 +305,7 @@ contains
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), -huge(1.0_wp), huge(1.0_wp))
    end subroutine require_whole
 
-   !> The same of the six components of a tensor that are finite, of magnitude up to a limit.
+   !> Requires that the six components of a tensor of STATEV are finite and of a magnitude up to a limit.
    pure subroutine require_tensor(statev, first, limit, status)
       real(wp), intent(in), contiguous :: statev(:)
       integer, intent(in) :: first   !< Entry of the first.
@@ -379,8 +380,8 @@ contains
       statev(S_N_CLEARED) = statev(S_N_CLEARED) + counters%cleared
    end subroutine pack_state
 
-   !> How often a guard acted: floor, caps, hysteresis of the reversal test, the isotropic mechanism that contradicts
-   !> itself.
+   !> Number of times that a guard acted: floor, caps, hysteresis of the reversal test, the isotropic mechanism that
+   !> contradicts itself.
    pure integer function guard_count(counters)
       type(counters_t), intent(in) :: counters
 

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What can go wrong. Negative: the caller's mistake. Positive: a hard increment, a smaller one may pass.
+!> Status codes. Negative: the caller's mistake. Positive: a hard increment, a smaller one may pass.
 module mud_status
    use mud_kinds, only: wp
    implicit none (type, external)
@@ -37,7 +37,7 @@ module mud_status
    !> A status with what a message needs: where, value and allowed range.
    type :: mud_status_t
       integer :: code = MUD_OK       !< One of the codes above.
-      integer :: subject = ON_NOTHING !< Which array or quantity is meant, one of ON_*.
+      integer :: subject = ON_NOTHING !< Array or quantity that is meant, one of ON_*.
       integer :: index = 0           !< Entry of that array, from 1; 0 if it has none.
       real(wp) :: value = 0.0_wp     !< The offending value.
       real(wp) :: lower = 0.0_wp     !< Allowed range.

@@ -24,7 +24,7 @@ module mud_tensor
    end type tensors_t
 
    real(wp), parameter :: IDENTITY(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-   !> How often a stored component stands in the 3 x 3 matrix.
+   !> Number of places at which a stored component stands in the 3 x 3 matrix.
    real(wp), parameter :: SHEAR_WEIGHT(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
    integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
    !> Added to the exponent's bits, one place to the right, it carries into the second bit of all if they are all set.
@@ -59,7 +59,7 @@ contains
           + (2.0_wp*a(4))*tensors(:, 4) + (2.0_wp*a(5))*tensors(:, 5) + (2.0_wp*a(6))*tensors(:, 6)
    end function contractions
 
-   !> The same of tensors of which something is known. In the unit of the tensors times that of a.
+   !> Contraction of tensors of a known kind with a tensor a. In the unit of the tensors times that of a.
    pure function contracted(tensors, a) result(c)
       type(tensors_t), intent(in) :: tensors
       real(wp), intent(in) :: a(6)

@@ -27,7 +27,7 @@ module mud_units
                           USUAL_P_MIN(2) = [3.0e-5_wp, 3.0e-2_wp]
    !> Usual void ratios at p' = p_atm of the critical state line (silt and sand: 0.3 to 2.5) and the compression line.
    real(wp), parameter :: USUAL_E_C(2) = [0.24_wp, 3.1_wp], USUAL_E_L(2) = [1.0_wp, 13.0_wp]
-   integer, parameter :: NDOUBTS = 5   !< How many entries are looked at.
+   integer, parameter :: NDOUBTS = 5   !< Number of entries that are looked at.
 
    !> An entry of PROPS that suggests another unit than that of p_atm.
    type :: doubt_t
@@ -49,7 +49,7 @@ contains
    !> Bounds and defaults of every entry in the user's unit; p_atm has its own bounds, its default is an atmosphere. N_c
    !> and N_l go with the unit to the power of lambda. Nothing is refused.
    pure subroutine bounds_for(props, lower, upper, default)
-      real(wp), intent(in) :: props(NPROPS)   !< Of which p_atm and lambda count.
+      real(wp), intent(in) :: props(NPROPS)   !< PROPS, of which p_atm and lambda count.
       real(wp), intent(out) :: lower(NPROPS), upper(NPROPS)
       real(wp), intent(out), optional :: default(NPROPS)
       real(wp) :: factors(NPROPS)
@@ -61,7 +61,7 @@ contains
       upper = PROPERTIES%upper*factors
    end subroutine bounds_for
 
-   !> The same material in another unit of stress, of which `unit` make one of the present unit. Entries with the unit
+   !> PROPS of a material in another unit of stress, of which `unit` make one of the present unit. Entries with the unit
    !> of stress are multiplied by it, N_c and N_l by its power lambda (docs/theory/material.md sections 3.2, 3.5).
    !> Neither argument is checked.
    pure function convert_props(props, unit) result(converted)
@@ -71,7 +71,8 @@ contains
       converted = props*factors_for(unit, props)
    end function convert_props
 
-   !> What each entry is multiplied by: N_c and N_l by unit**lambda, for e_c = N_c (p' + alpha_csl)**-lambda.
+   !> Factors on the entries of PROPS in another unit of stress: unit**lambda on N_c and N_l, for e_c = N_c (p' +
+   !> alpha_csl)**-lambda.
    pure function factors_for(unit, props) result(factors)
       real(wp), intent(in) :: unit, props(NPROPS)
       real(wp) :: factors(NPROPS), power

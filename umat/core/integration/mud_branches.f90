@@ -17,11 +17,11 @@ module mud_branches
    private
    public :: course_t, begin_course, list_kinks, take_branch, turn_around, end_course, MAX_KINKS
 
-   integer, parameter :: HALVINGS = 60            !< Of an increment: more than a double can tell apart.
+   integer, parameter :: HALVINGS = 60   !< Number of halvings of an increment: more than a double can tell apart.
    integer, parameter :: MAX_KINKS = 3*MAX_TURNS  !< Turning points to a turn and from it, and contacts.
    real(wp), parameter :: INSIDE = 1.0e-6_wp      !< A contact this close to an end of a way is that end [-].
 
-   !> How S_w changes through an increment.
+   !> Way of S_w through an increment.
    type :: course_t
       real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
       real(wp) :: log_turn, log_end   !< ln(x/P_a) there and at the end [-].
@@ -77,8 +77,8 @@ contains
       rise = inc%d_pc - max(suction_at(inc, time), 0.0_wp)*omega*inc%d_v*(1.0_wp + e)/e
    end function rise
 
-   !> Where x turns: suction is linear, and where x is stationary it has a maximum (its second derivative is negative
-   !> there), so there is one turn at most, from drying to wetting.
+   !> Time at which x turns: suction is linear, and where x is stationary it has a maximum (its second derivative is
+   !> negative there), so there is one turn at most, from drying to wetting.
    pure real(wp) function turn_of_suction(omega, inc) result(turn)
       real(wp), intent(in) :: omega
       type(increment_t), intent(in) :: inc
@@ -104,7 +104,7 @@ contains
    pure subroutine list_kinks(inc, course, times, n)
       type(increment_t), intent(in) :: inc
       type(course_t), intent(in) :: course
-      real(wp), intent(out) :: times(MAX_KINKS)   !< Beyond n without meaning [-].
+      real(wp), intent(out) :: times(MAX_KINKS)   !< Times of the kinks; entries beyond n have no meaning [-].
       integer, intent(out) :: n
       type(params_t) :: branch
       type(path_t) :: path
@@ -120,7 +120,7 @@ contains
       call list_on_way(inc, course%material, path, course%turn, 1.0_wp, course%log_end, times, n)
    end subroutine list_kinks
 
-   !> Those of a way of x in one direction.
+   !> Lists the kinks on a way of x in one direction.
    pure subroutine list_on_way(inc, par, start, from, to, log_to, times, n)
       type(increment_t), intent(in) :: inc
       type(params_t), intent(in) :: par
@@ -144,7 +144,7 @@ contains
       end do
    end subroutine list_on_way
 
-   !> Those between two turning points that are passed: places where another curve is followed.
+   !> Lists the kinks between two turning points that are passed: places where another curve is followed.
    pure subroutine list_contacts(inc, par, start, from, to, times, n)
       type(increment_t), intent(in) :: inc
       type(params_t), intent(in) :: par
@@ -248,8 +248,8 @@ contains
       if (begins_at_turn) begins_at_turn = abs(path%turns%log_x(path%turns%depth) - course%log_turn) <= 0.0_wp
    end function begins_at_turn
 
-   !> Where x turns: the turning point goes with suction step and volume of the increment. x is stationary there: its
-   !> place does not matter. docs/theory/material.md section 2.1.1.
+   !> Adds the turn of x to the path: the turning point goes with suction step and volume of the increment. x is
+   !> stationary there: its place does not matter. docs/theory/material.md section 2.1.1.
    pure subroutine turn_around(course, it)
       type(course_t), intent(inout) :: course
       type(integration_t), intent(inout) :: it

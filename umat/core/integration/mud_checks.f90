@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What an increment may look like: finite and of a credible size. A NaN is never compared: a comparison would trap.
+!> Checks that an increment is finite and of a credible size. A NaN is never compared: a comparison would trap.
 module mud_checks
    use mud_kinds, only: wp
    use mud_params, only: params_t
@@ -31,8 +31,8 @@ contains
       end if
    end subroutine check_stress
 
-   !> The same of a state, its strain increment and its suction step. Strain [-], suction step in the unit of p_atm.
-   !> What is not finite is MUD_BAD_INPUT; a strain component beyond 1 or a suction step beyond 1e7 kPa in that unit is
+   !> Checks a state, its strain increment and its suction step. Strain [-], suction step in the unit of p_atm. What is
+   !> not finite is MUD_BAD_INPUT; a strain component beyond 1 or a suction step beyond 1e7 kPa in that unit is
    !> MUD_INCREMENT_TOO_LARGE.
    pure subroutine check_increment(par, state, d_strain, d_pc, status)
       type(params_t), intent(in) :: par

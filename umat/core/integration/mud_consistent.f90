@@ -17,13 +17,13 @@ module mud_consistent
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows, MODE_ORDINARY
-   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, MAX_INTERRUPTED
+   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, MAX_INTERRUPTED
    use mud_relaxation, only: relax
    use mud_reversal, only: interrupted_share
    use mud_sensitivity, only: changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: IDENTITY, trace, deviator, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
+   use mud_tensor, only: IDENTITY, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, change_of_left, &
       add_changes_of_faded
    use mud_trial, only: trial_t
@@ -42,25 +42,29 @@ module mud_consistent
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
       logical :: at_rest                     !< the state does not depend on the increment yet: y, r_in, shift are zero
-      !> Of sigma', z, the plastic shear of the present process, ln chi', contraction within a substep, and fluidity.
+      !> Derivatives of sigma', z, the plastic shear of the present process, ln chi', contraction within a substep, and
+      !> fluidity.
       real(wp) :: y(DIRECTIONS, NY)
-      type(tensors_t) :: r_in                !< of the memory
-      real(wp) :: r_before(DIRECTIONS, 6)    !< of the memory of the process before
-      real(wp) :: shift(DIRECTIONS)          !< of the pseudo-time where the next substep begins
-      real(wp) :: stretch(DIRECTIONS)        !< of the length of the phase, over that length
-      !> Of the memories of interrupted processes; those up to number `settled` were there when the increment began.
+      type(tensors_t) :: r_in                !< derivatives of the memory
+      real(wp) :: r_before(DIRECTIONS, 6)    !< derivatives of the memory of the process before
+      real(wp) :: shift(DIRECTIONS)          !< derivatives of the pseudo-time where the next substep begins
+      real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
+      !> Derivatives of the memories of interrupted processes; those up to number `settled` were there when the
+      !> increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
-      !> With cyclic preloading, of the contraction of the present process and of ln chi' where the substep began.
+      !> Derivatives of the contraction of the present process and of ln chi' where the substep began, with cyclic
+      !> preloading.
       real(wp) :: chi_own(DIRECTIONS), log_chi0(DIRECTIONS)
-      !> of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts
+      !> Derivatives of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts.
       real(wp) :: margin(DIRECTIONS)
-      real(wp) :: parts(DIRECTIONS)          !< of the void ratio at which the grains of a held point part
+      real(wp) :: parts(DIRECTIONS)          !< derivatives of the void ratio at which the grains of a held point part
       type(driving_t) :: driving
-      type(fading_t) :: fading               !< of what fades of the rates, where that is known
+      type(fading_t) :: fading               !< derivatives of what fades of the rates, where that is known
    end type sensitivity_t
 contains
-   !> At the start of an increment nothing depends on it yet. docs/theory/integration.md section 5.3.
+   !> Sets the derivatives at the start of an increment, where nothing depends on it yet. docs/theory/integration.md
+   !> section 5.3.
    pure subroutine no_sensitivity(depth, inc, sens)
       integer, intent(in) :: depth           !< number of interrupted processes
       type(increment_t), intent(in) :: inc
@@ -167,7 +171,7 @@ contains
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       real(wp), intent(out) :: change(NY)
-      real(wp), intent(out) :: of_margin   !< Of the isotropic memory's margin less its measure [-].
+      real(wp), intent(out) :: of_margin   !< Derivative of the isotropic memory's margin less its measure [-].
       real(wp), dimension(DIRECTIONS) :: none, one, margin
       real(wp) :: rates(DIRECTIONS, NY, MAX_STAGES), y(DIRECTIONS, NY)
 
@@ -199,7 +203,7 @@ contains
       type(fading_t), intent(in) :: fading
       real(wp), intent(inout) :: rates(DIRECTIONS*NY, MAX_STAGES)   !< The first is given.
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
-      real(wp), intent(inout) :: margin(DIRECTIONS)   !< Of the isotropic memory's margin less its measure.
+      real(wp), intent(inout) :: margin(DIRECTIONS)   !< Derivatives of the isotropic memory's margin less its measure.
       real(wp) :: y(DIRECTIONS*NY), time, dt(DIRECTIONS), &
          of_margin(DIRECTIONS, MAX_STAGES), of_stages(MAX_STAGES), at_stages(MAX_STAGES), start, &
          left(MAX_STAGES + 1), d_left(DIRECTIONS, MAX_STAGES + 1)
@@ -250,7 +254,8 @@ contains
          if (follows) margin = margin + matmul(of_margin(:, 1:last), weights)
       end associate
    contains
-      !> What the rate of stage i gives over the whole substep to the margin of the isotropic memory less its measure.
+      !> Contribution of the rate of stage i over the whole substep to the margin of the isotropic memory less its
+      !> measure.
       pure function stage_of_margin(i, point, time, dt, before, y, rate) result(change)
          integer, intent(in) :: i
          real(wp), intent(in) :: point(NY), time, dt(DIRECTIONS), before(DIRECTIONS), y(DIRECTIONS, NY), &
@@ -264,7 +269,8 @@ contains
       end function stage_of_margin
    end subroutine through_stages
 
-   !> At what it remembers the isotropic mechanism has no margin: its derivatives are those of the measure.
+   !> Sets the derivatives of the isotropic memory's margin where the mechanism is at its memory and has none: those of
+   !> the measure.
    pure subroutine changes_at_memory(par, inc, time, sigma, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -308,7 +314,8 @@ contains
       end associate
    end subroutine change_of_transient
 
-   !> What its size, which changes by dh, and the stiff direction add to stage i.
+   !> Adds to the derivatives of stage i those by the size of the substep, which changes by dh, and by the stiff
+   !> direction.
    pure subroutine finish_stage(trial, h, i, live, moves, dh, rates)
       type(trial_t), intent(in) :: trial
       integer, intent(in) :: i, live   !< live: numbers that may change
@@ -384,13 +391,13 @@ contains
       type(increment_t), intent(in) :: inc
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: point(NY), time, e
-      type(loading_t), intent(in) :: loading   !< of the strain rate there
+      type(loading_t), intent(in) :: loading   !< loading part of the strain rate there
       type(linearised_t), intent(inout) :: lin
 
       call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin)
    end subroutine linearise_stage
 
-   !> How the arguments of a rate change, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
+   !> Changes of the arguments of a rate, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
    !> time and dt are shares of inc, e is the void ratio [-]; units of the changes as in changes_t.
    pure subroutine changes_along(inc, mode, time, e, dt, driving, changes)
       type(increment_t), intent(in) :: inc

@@ -82,7 +82,7 @@ contains
       if (may_open) may_open = trace(sigma) <= 3.0_wp*par%p_min*(1.0_wp + AT_LIMIT)
    end function may_open
 
-   !> How far p' is above p_min, as a share of p_min [-]: a point opens where it passes zero. sigma' in the unit of
+   !> Height of p' above p_min, as a share of p_min [-]: a point opens where it passes zero. sigma' in the unit of
    !> p_atm. docs/theory/integration.md section 4.2.
    pure real(wp) function height(par, sigma)
       type(params_t), intent(in) :: par
@@ -91,7 +91,7 @@ contains
       height = trace(sigma)/(3.0_wp*par%p_min) - 1.0_wp
    end function height
 
-   !> Its changes with those of the stress, times 3 p_min. In the unit of p_atm.
+   !> Changes of the height of p' above p_min with those of the stress, times 3 p_min. In the unit of p_atm.
    pure function changes_of_height(y) result(changes)
       real(wp), intent(in) :: y(DIRECTIONS, NY)
       real(wp) :: changes(DIRECTIONS)
@@ -99,7 +99,7 @@ contains
       changes = y(:, 1) + y(:, 2) + y(:, 3)
    end function changes_of_height
 
-   !> Its rate [-], per unit of pseudo-time.
+   !> Rate of the height of p' above p_min [-], per unit of pseudo-time.
    pure real(wp) function height_rate(par, w)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
@@ -236,7 +236,7 @@ contains
       dsig_dpc = par%p_min*held_rate(par, inc%bonded, e, state%p_c, r, follows, sliding, unit, 1.0_wp)
    end subroutine held_tangent
 
-   !> How a held point would go on if it closed: inside the elastic domain without plastic dilatancy. One of
+   !> Mode in which a held point would go on if it closed: inside the elastic domain without plastic dilatancy. One of
    !> MODE_ORDINARY and MODE_ELASTIC.
    pure integer function closing_mode(inc)
       type(increment_t), intent(in) :: inc
@@ -263,14 +263,14 @@ contains
    !> True where p' would rise from p_min by enough to close. docs/theory/material.md sections 6.1, 6.3.
    pure logical function closes(inc, openings, w)
       type(increment_t), intent(in) :: inc
-      integer, intent(in) :: openings      !< how often p' has fallen to p_min in this increment or phase
+      integer, intent(in) :: openings      !< number of times that p' has fallen to p_min in this increment or phase
       type(rate_t), intent(in) :: w        !< at p_min, without a past
 
       closes = .not. closing_rate(inc, openings, w) <= 0.0_wp   ! a rate that is not finite is not hidden
    end function closes
 
-   !> What an open point is below the rate of p' at which it closes, as a share of the elastic rate [-]: it closes where
-   !> that passes zero. docs/theory/integration.md section 4.2.
+   !> Distance of an open point below the rate of p' at which it closes, as a share of the elastic rate [-]: it closes
+   !> where that passes zero. docs/theory/integration.md section 4.2.
    pure real(wp) function closing_function(inc, openings, w)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: openings
@@ -295,7 +295,7 @@ contains
       change = d_rate - closing_share(openings)*change
    end function change_of_closing_rate
 
-   !> How far the rate of p' is above the one at which an open point closes, positive if it closes [kPa].
+   !> Distance of the rate of p' above the one at which an open point closes, positive if it closes [kPa].
    pure real(wp) function closing_rate(inc, openings, w)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: openings

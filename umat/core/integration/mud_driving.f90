@@ -14,12 +14,12 @@ module mud_driving
    !> Derivatives of what drives the increment along six engineering strains and the suction at the end of the
    !> increment, side by side. The eighth direction is idle: along it nothing changes.
    type :: driving_t
-      type(tensors_t) :: d_strain              !< of its strain
-      real(wp) :: d_v(DIRECTIONS)              !< of its volume
-      real(wp) :: d_pc(DIRECTIONS)             !< of its suction step
-      real(wp) :: exit(DIRECTIONS)             !< of the pseudo-time at which it leaves the elastic domain
-      type(tensors_t) :: from_centre           !< of the strain from the centre of the elastic domain there
-      logical :: scans                         !< It is on a branch that depends on the increment ...
+      type(tensors_t) :: d_strain              !< derivatives of the strain of the increment
+      real(wp) :: d_v(DIRECTIONS)              !< derivatives of the volume of the increment
+      real(wp) :: d_pc(DIRECTIONS)             !< derivatives of the suction step
+      real(wp) :: exit(DIRECTIONS)   !< derivatives of the pseudo-time at which the strain leaves the elastic domain
+      type(tensors_t) :: from_centre           !< derivatives of the strain from the centre of the elastic domain there
+      logical :: scans                         !< The point is on a branch that depends on the increment ...
       real(wp) :: turn(DIRECTIONS)             !< ... by ln x of the turn where it begins; not set otherwise.
    end type driving_t
 

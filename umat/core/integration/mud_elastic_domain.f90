@@ -18,7 +18,7 @@ module mud_elastic_domain
       real(wp) :: nu(6)
       real(wp) :: d(6)           !< strain from the centre at the start [-]
       real(wp) :: u(6), length   !< direction and size of the increment [-]
-      real(wp) :: rho, time, cosine, decay, share, divisor   !< of find_tractrix [-]
+      real(wp) :: rho, time, cosine, decay, share, divisor   !< quantities of find_tractrix [-]
    end type turning_t
 
    !> Changes of nu as a sum: of_d times those of d, of_increment times those of the increment, and parts along d and u.
@@ -115,8 +115,8 @@ contains
       if (time > 0.0_wp) decay = exp(-length*time/rho)
    end function decay_at
 
-   !> What the changes of nu with d, which stays on the sphere, and the increment are made of. All [-]. Derivative of
-   !> docs/theory/memory-rules.md section 4.2.
+   !> Finds the parts of which the changes of nu with d, which stays on the sphere, and with the increment are made. All
+   !> [-]. Derivative of docs/theory/memory-rules.md section 4.2.
    pure subroutine combination_of_turning(turning, d_changes, increment_changes, by)
       type(turning_t), intent(in) :: turning
       type(tensors_t), intent(in) :: d_changes, increment_changes

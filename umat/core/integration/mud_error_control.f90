@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Which error of a substep is allowed, and the size of the next attempt; docs/theory/integration.md sections 3, 3.1.
+!> Error that a substep may have, and the size of the next attempt; docs/theory/integration.md sections 3, 3.1.
 module mud_error_control
    use mud_cutoff, only: MODE_HELD
    use mud_increment, only: increment_t
@@ -26,9 +26,9 @@ module mud_error_control
    integer, parameter :: RESOLVED_JUMPS = 1
    real(wp), parameter :: GROWTH = 2.0_wp, LARGEST_GROWTH = 32.0_wp
 
-   !> What is known of the attempts of an increment or phase.
+   !> Knowledge of the attempts of an increment or phase.
    type :: control_t
-      !> Of the attempt before at this substep, 0: none; h a share of the increment [-].
+      !> Error and size of the attempt before at this substep, 0: none; h a share of the increment [-].
       real(wp) :: error = 0.0_wp, h = 0.0_wp
       integer :: jumps = 0   !< attempts so far whose error was that of a jump
    end type control_t
@@ -77,7 +77,7 @@ contains
       type(increment_t), intent(in) :: inc   !< With the scheme of its last substep.
       real(wp), intent(in) :: planned   !< Before the increment cut it short; 0: none [-]
       real(wp), intent(in) :: grown     !< By the last substep and its error [-]
-      real(wp), intent(in) :: factor    !< Of that growth [-]
+      real(wp), intent(in) :: factor    !< Factor of that growth [-]
 
       proposal = grown
       if (factor < LARGEST_FACTOR .or. inc%scheme%order >= THIRD_ORDER%order) return

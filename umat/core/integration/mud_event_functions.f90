@@ -14,14 +14,14 @@ module mud_event_functions
    use mud_rates, only: stress_ratio
    use mud_return_point, only: place_t, place_at, projection_on_chord, beyond_target
    use mud_state, only: counters_t
-   use mud_tensor, only: ddot, norm, deviator
+   use mud_tensor, only: norm, deviator
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
    public :: event_function, rate_at_start, rate_at_end, place_of, elastic_rate, psi_at, LARGEST_EXCESS
 
-   !> At a low stress an elastic strain of rho_e may be more than the whole strength: r may exceed the bounding surface
-   !> by this share. Softening sand is some per cent beyond it and must be able to return where it came from [-].
+   !> Share by which r may exceed the bounding surface: at a low stress an elastic strain of rho_e may be more than the
+   !> whole strength. Softening sand is some per cent beyond it and must be able to return where it came from [-].
    real(wp), parameter :: LARGEST_EXCESS = 0.2_wp
 contains
    !> The rate that an event looks at where the trial's substep ends: that of the last stage if it stands there. Events
@@ -131,7 +131,7 @@ contains
       t = (2.0_wp*w%g)*deviator(inc%d_strain) - (w%k*inc%d_v)*r
    end function elastic_rate
 
-   !> How far r may be beyond the bounding surface in a substep inside the elastic domain: from farther outside it is
+   !> Largest excess of r over the bounding surface in a substep inside the elastic domain: from farther outside it is
    !> the excess at the start.
    pure real(wp) function allowed_excess(par, inc, trial)
       type(params_t), intent(in) :: par

@@ -5,7 +5,7 @@
 module mud_event_table
    use mud_cutoff, only: MODE_HELD
    use mud_kinds, only: wp
-   use mud_rates, only: MODE_ORDINARY, MODE_ELASTIC
+   use mud_rates, only: MODE_ORDINARY
    implicit none (type, external)
    private
    public :: event_t, EVENTS, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND
@@ -26,12 +26,13 @@ module mud_event_table
    integer, parameter :: EVENT_TURN = 10      !< A process ceases to go forwards; its substep goes on.
 
    integer, parameter :: NO_RATE = 0          !< The function looks at the state alone.
-   integer, parameter :: RATE_THERE = 1       !< It looks at the rate there.
-   integer, parameter :: RATE_IF_CLOSED = 2   !< It looks at the rate of a held point that closes, without a past.
+   integer, parameter :: RATE_THERE = 1       !< The function looks at the rate there.
+   integer, parameter :: RATE_IF_CLOSED = 2   !< The function looks at the rate of a held point that closes, without a
+                                              !< past.
 
    integer, parameter :: BEFORE = -1   !< A substep ends on its own side: its derivatives are those of that side.
-   integer, parameter :: AT = 0        !< It may end on either, within rounding.
-   integer, parameter :: BEYOND = 1    !< It must be beyond the event, or that would not happen.
+   integer, parameter :: AT = 0        !< A substep may end on either side, within rounding.
+   integer, parameter :: BEYOND = 1    !< A substep must end beyond the event, or that would not happen.
 
    !> A function is zero below this share of its change over the substep: far enough above rounding that rounding does
    !> not decide how many trials are made [-].
@@ -45,7 +46,7 @@ module mud_event_table
       logical :: concerns(MODE_ORDINARY:MODE_HELD)   !< Substeps that are ordinary, elastic, held.
       integer :: looks_at                            !< NO_RATE, RATE_THERE, RATE_IF_CLOSED
       integer :: side                                !< Where the substep ends: BEFORE, AT, BEYOND.
-      logical :: moves      !< Its time counts in a derivative: rates are not continuous there.
+      logical :: moves      !< The time of the event counts in a derivative: rates are not continuous there.
       real(wp) :: residual  !< Share of its change below which the function is zero [-].
       integer :: trials     !< At most.
    end type event_t

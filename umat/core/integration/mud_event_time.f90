@@ -155,7 +155,7 @@ contains
       if (jumps) jumps = ddot(trial%w(1)%n, w%n) < 0.0_wp .or. changes_root([trial%w(1), w])
    end function jumps
 
-   !> The same along one direction, where the event depends on the bounding surface.
+   !> Slope of an event function that depends on the bounding surface, along one direction.
    pure real(wp) function slope_at_surface(par, inc, event, trial, time, y, dr, de, dp_c, d_turn) result(slope)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

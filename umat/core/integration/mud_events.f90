@@ -10,10 +10,9 @@ module mud_events
    use mud_integration, only: integration_t
    use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_kinds, only: wp
-   use mud_landing, only: land_on, EVENT_TOLERANCE
+   use mud_landing, only: land_on
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_rates, only: MODE_ELASTIC
    use mud_return_point, only: place_t, projection_on_chord, note_progress, note_farthest
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
@@ -36,7 +35,7 @@ contains
    !> docs/theory/integration.md sections 4.1, 4.2.
    pure subroutine stop_at_event(par, error, h, it)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: error        !< of the substep [-]
+      real(wp), intent(in) :: error        !< error of the substep [-]
       real(wp), intent(inout) :: h
       type(integration_t), intent(inout) :: it
       integer :: i

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> How large an increment is beside the stiffness of a point.
+!> Size of an increment beside the stiffness of a point.
 module mud_extent
    use mud_kinds, only: wp
    use mud_cutoff, only: soil_void_ratio

@@ -37,11 +37,11 @@ module mud_increment
       real(wp) :: from_centre(6)    !< Strain from its centre, there or, if it stays inside, at the start [-].
       logical :: straight           !< From there on all of the strain loads: it leads along nu.
       ! the phase
-      real(wp) :: from, to          !< Its place [-].
+      real(wp) :: from, to          !< Begin and end of the phase in the increment [-].
       logical :: bonded             !< Bonding is on and there is suction.
-      logical :: inside             !< It is inside the elastic domain.
-      type(scheme_t) :: scheme      !< Of the substep.
-      logical :: rests              !< Of the substep: the isotropic mechanism is below its memory.
+      logical :: inside             !< The phase is inside the elastic domain.
+      type(scheme_t) :: scheme      !< Pair of the substep.
+      logical :: rests              !< The isotropic mechanism is below its memory in the substep.
    end type increment_t
 contains
    !> Rate at a vector of the integration and a pseudo-time; void ratio and suction follow from the latter exactly. time
@@ -54,7 +54,7 @@ contains
       integer, intent(in) :: mode
       type(rate_t), intent(inout) :: w
       type(counters_t), intent(inout) :: counters
-      type(rate_t), intent(in), optional :: near   !< As rate_at has it.
+      type(rate_t), intent(in), optional :: near   !< Rate nearby, as rate_at has it.
       real(wp) :: loading(6), aside(6)
 
       if (has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)) then
@@ -76,7 +76,7 @@ contains
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
 
-   !> How many numbers of the integrated vector may change: those of effects that are off stand last.
+   !> Number of entries of the integrated vector that may change: those of effects that are off stand last.
    pure integer function live_numbers(par) result(n)
       type(params_t), intent(in) :: par
 
@@ -141,7 +141,7 @@ contains
       integer, intent(in) :: mode
       real(wp), intent(in) :: time             !< a share of inc
       type(tensors_t), intent(in) :: strain, centre   !< changes of both
-      real(wp), intent(in) :: dt(LANES)        !< of the pseudo-time since the exit
+      real(wp), intent(in) :: dt(LANES)        !< changes of the pseudo-time since the exit
       type(loading_t), intent(inout) :: loading
       type(turning_t) :: turning
       type(combination_t) :: by
@@ -188,9 +188,9 @@ contains
       end do
    end subroutine changes_of_loading_strain
 
-   !> The same of a strain a along nu, all of which loads: (nu:a) nu changes with a by 1 - q across nu and by 1 along
-   !> it, with the centre by q |a|/rho, where q, the tractrix's decay, is what is left of nu's first direction. All [-];
-   !> limit of docs/theory/memory-rules.md section 4.2 for d along a.
+   !> Changes of the loading part of a strain a along nu, all of which loads: (nu:a) nu changes with a by 1 - q across
+   !> nu and by 1 along it, with the centre by q |a|/rho, where q, the tractrix's decay, is what is left of nu's first
+   !> direction. All [-]; limit of docs/theory/memory-rules.md section 4.2 for d along a.
    pure subroutine changes_of_straight_strain(inc, time, strain, loading)
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time

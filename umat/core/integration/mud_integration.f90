@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What the integration of an increment carries along.
+!> State of the integration of an increment on its way.
 module mud_integration
    use mud_consistent, only: sensitivity_t, JUMP_NONE
    use mud_event_table, only: EVENT_NONE
@@ -17,12 +17,12 @@ module mud_integration
    !> An increment on its way.
    type :: integration_t
       type(increment_t) :: inc
-      real(wp) :: size               !< Of the increment, in units of strain [-].
+      real(wp) :: size               !< Size of the increment, in units of strain [-].
       type(state_t) :: state         !< After the last accepted substep.
       type(trial_t) :: trial         !< The substep that is tried, or the last accepted one.
       integer :: jump = JUMP_NONE    !< JUMP_* of the memory at its start, the last one if there were several.
       integer :: event = EVENT_NONE  !< EVENT_* at which the last accepted substep ended.
-      logical :: known = .false.     !< Its last rate is the first of the next; one held does not close.
+      logical :: known = .false.     !< The last rate of the trial is the first of the next; one held does not close.
       logical :: consistent          !< Derivatives are wanted, and there is something to derive.
       type(sensitivity_t) :: sens
       type(counters_t) :: counters

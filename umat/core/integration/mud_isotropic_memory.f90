@@ -21,10 +21,10 @@ module mud_isotropic_memory
    !> without a change of volume. An unloading is located where it is this far below zero [-].
    real(wp), parameter :: ROUNDING = 1.0e-10_wp
 contains
-   !> How fast the margin would rise from 0 at a pseudo-time, by the rate w there, per unit of pseudo-time [-]; from 0
-   !> on the isotropic mechanism may act. Contraction by shear counts as if it did not lower p', and all of it is told
-   !> by the rate without the mechanism: it does not depend on whether the mechanism acts.
-   !> docs/theory/material.md section 4.10.
+   !> Rate at which the margin would rise from 0 at a pseudo-time, by the rate w there, per unit of pseudo-time [-];
+   !> from 0 on the isotropic mechanism may act. Contraction by shear counts as if it did not lower p', and all of it is
+   !> told by the rate without the mechanism: it does not depend on whether the mechanism acts. docs/theory/material.md
+   !> section 4.10.
    pure real(wp) function drive_of_margin(par, inc, time, w) result(drive)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
@@ -71,7 +71,8 @@ contains
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
-      real(wp), intent(out) :: margin(MAX_STAGES), rates(MAX_STAGES)   !< Beyond the stages without meaning.
+      !> Margin and its rates at the stages; entries beyond them have no meaning.
+      real(wp), intent(out) :: margin(MAX_STAGES), rates(MAX_STAGES)
       real(wp), intent(out) :: first   !< The measure where the substep begins [-].
       type(measure_t) :: m
       real(wp) :: e

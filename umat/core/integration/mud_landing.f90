@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Where in a substep an event happens: the substep is shortened to end there; docs/theory/integration.md section 4.1.
+!> Shortens a substep so that it ends at the event inside it; docs/theory/integration.md section 4.1.
 module mud_landing
    use mud_cutoff, only: height_rate, MODE_HELD
    use mud_event_functions, only: event_function, rate_at_start, rate_at_end
@@ -23,10 +23,10 @@ module mud_landing
    real(wp), parameter :: AT_START = 1.0e-6_wp
    !> A function that has no zero by then jumps there, as (r - r_in):n does from one direction to another: bisection.
    integer, parameter :: SMOOTH_ITERATIONS = 16
-   !> It jumps where, after some trials and over a bracket shorter than this share of the substep, it still changes by
-   !> more than that share of its change over the whole: bisection. Only where the direction turns to its opposite does
-   !> the convergence of a host's Newton method depend on the place; elsewhere the error of the stress bounds the
-   !> bracket [-].
+   !> Criterion of a jump: after some trials and over a bracket shorter than SHORT of the substep the function still
+   !> changes by more than JUMP of its change over the whole; then bisection. Only where the direction turns to its
+   !> opposite does the convergence of a host's Newton method depend on the place; elsewhere the error of the stress
+   !> bounds the bracket [-].
    real(wp), parameter :: SHORT = 0.25_wp, JUMP = 0.5_wp, OPPOSITE = -0.9_wp
    integer, parameter :: TRIALS = 3
    !> A jump in a substep leaves an error of a tenth to a twentieth of its change of the stress. This share of the
@@ -42,7 +42,7 @@ contains
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: event
-      real(wp), intent(in) :: error        !< of the substep [-]
+      real(wp), intent(in) :: error        !< error of the substep [-]
       real(wp), intent(inout) :: h
       type(trial_t), intent(inout) :: trial
       type(counters_t), intent(inout) :: counters
@@ -122,10 +122,10 @@ contains
       h = high
    end subroutine land_on
 
-   !> How long the bracket of a jump may be, share of inc [-].
+   !> Largest length of the bracket of a jump, share of inc [-].
    pure real(wp) function jump_width(inc, h, error, trial) result(width)
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: h, error   !< of the substep: its size, and its error in tolerances [-]
+      real(wp), intent(in) :: h, error   !< size of the substep, and its error in tolerances [-]
       type(trial_t), intent(in) :: trial
 
       width = JUMP_SHARE*h/max(error, 1.0_wp)
@@ -135,8 +135,8 @@ contains
       width = max(width, EVENT_TOLERANCE)
    end function jump_width
 
-   !> What Anderson and Bjoerck's false position leaves of the value at the end of the bracket that rests, after a new
-   !> value on the other side.
+   !> Factor by which Anderson and Bjoerck's false position lowers the value at the end of the bracket that rests, after
+   !> a new value on the other side.
    pure real(wp) function remaining(new, old)
       real(wp), intent(in) :: new, old
 

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Which pair the coming substep takes: with the scheme `automatic` modified Euler where one substep of it reaches the
-!> end, otherwise the third order, linearly implicit where the rates are stiff; docs/theory/integration.md section 2.
+!> Choice of the pair of the coming substep: with the scheme `automatic` modified Euler where one substep of it reaches
+!> the end, otherwise the third order, linearly implicit where the rates are stiff; docs/theory/integration.md section
+!> 2.
 module mud_order
    use mud_consistent, only: linearise_stage
    use mud_cutoff, only: MODE_HELD
@@ -10,7 +11,7 @@ module mud_order
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: SCHEME_AUTOMATIC
    use mud_fluidity, only: growth
-   use mud_relaxation, only: relaxation_t, relaxation_speed, new_relaxation
+   use mud_relaxation, only: relaxation_speed, new_relaxation
    use mud_sensitivity, only: changes_of_rate
    use mud_substep, only: SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, step_factor
    use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
@@ -33,7 +34,7 @@ contains
    !> automatic does. Shares of inc [-]. docs/theory/integration.md section 2.1.
    pure subroutine choose_stepping(par, rest, h, inc, trial)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: rest, h     !< what is left; the size that error control proposes
+      real(wp), intent(in) :: rest, h     !< rest of the phase; the size that error control proposes
       type(increment_t), intent(inout) :: inc
       type(trial_t), intent(inout) :: trial   !< with its first rate
       real(wp) :: speed

@@ -18,7 +18,7 @@ module mud_phases
    integer, parameter :: CUT_END = 0, CUT_TURN = 1, CUT_NO_SUCTION = 2, CUT_EXIT = 3, CUT_KINK = 4
    integer, parameter :: MAX_CUTS = 4 + MAX_KINKS
 
-   !> Where a phase ends.
+   !> End of a phase.
    type :: cut_t
       integer :: kind    !< CUT_*: what moves it.
       real(wp) :: time   !< Pseudo-time [-].

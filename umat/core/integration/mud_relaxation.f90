@@ -21,8 +21,8 @@ module mud_relaxation
       real(wp) :: slope(6)   !< dL/d sigma' by components [1/kPa]
    end type relaxation_t
 contains
-   !> How fast L relaxes per unit of pseudo-time, as far as it depends on r:n alone: near the bounding surface by a few
-   !> per cent. 0 where nothing loads, or where the softening cap keeps L constant [-]. docs/theory/integration.md
+   !> Speed at which L relaxes per unit of pseudo-time, as far as it depends on r:n alone: near the bounding surface by
+   !> a few per cent. 0 where nothing loads, or where the softening cap keeps L constant [-]. docs/theory/integration.md
    !> section 2.1.
    pure real(wp) function relaxation_speed(w) result(speed)
       type(rate_t), intent(in) :: w
@@ -57,7 +57,7 @@ contains
    pure subroutine relax(relaxation, h, rates)
       type(relaxation_t), intent(in) :: relaxation
       real(wp), intent(in) :: h
-      real(wp), intent(inout) :: rates(:, :)   !< those of the stages so far
+      real(wp), intent(inout) :: rates(:, :)   !< rates of the stages so far
       real(wp) :: change
       integer :: i, j
 

@@ -21,13 +21,13 @@ module mud_return_point
    !> arrives [-].
    real(wp), parameter :: SURFACE_MARGIN = 1.001_wp
 
-   !> Where a process is.
+   !> Place of a loading process in its way.
    type :: place_t
       logical :: loading   !< There is a loading direction.
       real(wp) :: r(6)     !< stress ratio [-]
       real(wp) :: x        !< (r - r_in):n [-]
       real(wp) :: chord(6) !< from the memory, with the floor along n [-]
-      real(wp) :: length   !< of the chord [-]
+      real(wp) :: length   !< length of the chord [-]
       real(wp) :: along    !< t:chord, t the elastic rate of the stress ratio under the whole strain, of any length
    end type place_t
 contains
@@ -70,12 +70,12 @@ contains
       memory%target = max(memory%target, ddot(r, memory%direction))
    end subroutine note_farthest
 
-   !> Not negative where a process goes forwards: (r - r_in):n is not negative, the loading direction is near the chord
-   !> from the memory, and the whole strain leads along it. The chord counts, not the running direction: on a smoothly
-   !> turned loop n follows the turn, and no reversal would ever be found. The path may leave the elastic domain
-   !> sideways while it reloads: n then still points forwards while r falls, which is no progress. Its sign counts: x
-   !> and length are [-], t:chord is in the unit of t. -1 without a loading direction. docs/theory/memory-rules.md
-   !> section 3.2.
+   !> Projection of the elastic rate of the stress ratio on the chord, not negative where a process goes forwards: (r -
+   !> r_in):n is not negative, the loading direction is near the chord from the memory, and the whole strain leads along
+   !> it. The chord counts, not the running direction: on a smoothly turned loop n follows the turn, and no reversal
+   !> would ever be found. The path may leave the elastic domain sideways while it reloads: n then still points forwards
+   !> while r falls, which is no progress. Its sign counts: x and length are [-], t:chord is in the unit of t. -1
+   !> without a loading direction. docs/theory/memory-rules.md section 3.2.
    pure real(wp) function projection_on_chord(par, place)
       type(params_t), intent(in) :: par
       type(place_t), intent(in) :: place
@@ -113,7 +113,7 @@ contains
       if (ddot(t, memory%interrupted(k)%direction) <= 0.0_wp) k = 0
    end function watched_process
 
-   !> How far r is beyond the target of an interrupted process, negative before it [-]. docs/theory/memory-rules.md
+   !> Distance of r beyond the target of an interrupted process, negative before it [-]. docs/theory/memory-rules.md
    !> section 3.4.
    pure real(wp) function beyond_target(par, process, r, m_b) result(distance)
       type(params_t), intent(in) :: par

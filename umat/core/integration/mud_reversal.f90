@@ -65,7 +65,7 @@ contains
       memory%x_running = 0.0_wp
    end subroutine begin_process
 
-   !> After an accepted substep with a plastic contraction of `grown` by which ln chi' has changed by `lost`. What is
+   !> Books an accepted substep with a plastic contraction of `grown` by which ln chi' has changed by `lost`. What is
    !> contraction of the present process comes before what dilation takes from all, or after: where D changes its sign
    !> both are small. All [-]; docs/theory/material.md section 4.9.
    pure subroutine note_contraction(lost, grown, memory)
@@ -89,7 +89,7 @@ contains
       if (eps_q_p < par%eps_hat) m = 1.0_wp - (eps_q_p/par%eps_hat)**par%j_exp
    end function interrupted_share
 
-   !> After an accepted substep whose place that counts has (r - r_in):n = x. x and the plastic shear d_eps_q of the
+   !> Books an accepted substep whose place that counts has (r - r_in):n = x. x and the plastic shear d_eps_q of the
    !> substep [-]; x below 0 is not kept. docs/theory/memory-rules.md section 2.3.
    pure subroutine accept_process(loading, x, d_eps_q, memory)
       logical, intent(in) :: loading   !< There was a loading direction.

@@ -18,7 +18,7 @@ module mud_substep
    !> An explicit pair with local extrapolation.
    type :: scheme_t
       integer :: stages
-      integer :: order                  !< Of the solution; the estimate is one lower [-].
+      integer :: order                  !< Order of the solution; the estimate is one lower [-].
       logical :: first_same_as_last     !< The last stage is the rate at the solution.
       real(wp) :: a(TRIANGLE)           !< Strict lower triangle row by row: weights of the earlier rates in a stage.
       real(wp) :: b(MAX_STAGES)         !< Weights of the solution.
@@ -77,7 +77,7 @@ module mud_substep
       5.4180672388095326e-2_wp, 2.4212380706095346e-1_wp, -1.2232505839045147_wp, 5.4526025533510214e-1_wp]
    real(wp), parameter :: IMPLICIT_DIAGONAL = 4.3586652150845900e-1_wp
 contains
-   !> Where stage i of a step h stands. y0(n), y(n), rates(n, i - 1 or more) per unit of time; h in that unit. Butcher's
+   !> Place of stage i of a step h. y0(n), y(n), rates(n, i - 1 or more) per unit of time; h in that unit. Butcher's
    !> form; docs/theory/integration.md section 2.
    pure subroutine stage_point(scheme, i, y0, rates, h, y)
       type(scheme_t), intent(in) :: scheme

@@ -14,7 +14,6 @@ module mud_substepping
    use mud_order, only: choose_stepping, choose_order, next_size, LAST_SLIVER
    use mud_params, only: params_t
    use mud_registry, only: SCHEME_AUTOMATIC
-   use mud_state, only: state_t
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
    use mud_rates, only: MODE_ORDINARY
@@ -29,17 +28,17 @@ module mud_substepping
 
    !> Steps of a phase: sizes are shares of the increment, with the scheme automatic those of third order [-].
    type :: stepping_t
-      real(wp) :: h          !< Of the next attempt; after an accepted one that of the next substep.
+      real(wp) :: h          !< Size of the next attempt; after an accepted one that of the next substep.
       real(wp) :: planned    !< Before the phase cut it short, in units of strain, 0: none.
-      real(wp) :: error      !< Of the last attempt.
-      real(wp) :: factor     !< That its error allows on its size.
+      real(wp) :: error      !< Error of the last attempt.
+      real(wp) :: factor     !< Factor on the size that this error allows.
       logical :: turns       !< The elastic domain turns sharply: third order.
       integer :: elastic     !< Substeps without a direction so far.
       type(control_t) :: control
    end type stepping_t
 
-   !> From this on, some degrees, a turn of the domain is followed by the higher order: it is a transient that modified
-   !> Euler pays for with many substeps, and whose errors add up along turning paths [-].
+   !> Turn of the domain, some degrees, from which on the higher order follows it: it is a transient that modified Euler
+   !> pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
    !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. It is
    !> longer, in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine: what the fading parts of
@@ -190,8 +189,8 @@ contains
       end if
    end function first_step
 
-   !> How far the elastic domain turns in the phase, 1 minus its cosine with the strain: the transient lasts about a
-   !> radius of strain.
+   !> Turn of the elastic domain in the phase, 1 minus its cosine with the strain: the transient lasts about a radius of
+   !> strain.
    pure real(wp) function turn_of(inc)
       type(increment_t), intent(in) :: inc
       real(wp) :: length

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What the turn of the elastic domain adds to the rates: two parts that fade as exp(-k t) and exp(-2 k t), k = |a|/rho,
-!> faster than anything else changes. A pair integrates what is left of the rates, the parts are integrated exactly.
-!> Whatever the parts are, the order of the pair stays; docs/theory/integration.md section 2.2.
+!> Parts that the turn of the elastic domain adds to the rates: two, which fade as exp(-k t) and exp(-2 k t), k =
+!> |a|/rho, faster than anything else changes. A pair integrates what is left of the rates, the parts are integrated
+!> exactly. Whatever the parts are, the order of the pair stays; docs/theory/integration.md section 2.2.
 module mud_transient
    use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_elastic_part, NY, STRAIGHT
    use mud_kinds, only: wp
@@ -17,7 +17,7 @@ module mud_transient
 
    !> Rates that fade, per unit of pseudo-time.
    type :: transient_t
-      logical :: sought = .false.   !< They were looked for ...
+      logical :: sought = .false.   !< The parts were looked for ...
       logical :: known = .false.    !< ... and found.
       integer :: terms              !< 0: the strain does not turn, nothing fades but what changes of it would; 1, 2.
       real(wp) :: since             !< Pseudo-time from which they fade [-].
@@ -26,7 +26,7 @@ module mud_transient
       type(rate_t) :: far, half     !< Rates from the same start without the turn; half-way, where there are two terms.
    end type transient_t
 
-   !> Their changes along the directions of a derivative.
+   !> Changes of the parts that fade, along the directions of a derivative.
    type :: fading_t
       real(wp) :: parts(LANES, NY, 2), speed(LANES), since(LANES)
    end type fading_t
@@ -39,7 +39,7 @@ module mud_transient
    !> The second part, of the second power of the angle, is left out where the stress that the centre lags behind moves
    !> by less than this share of the tolerance [-].
    real(wp), parameter :: ONE_TERM = 0.1_wp
-   !> Beyond this k t what is left is below rounding [-].
+   !> k t beyond which the parts are below rounding [-].
    real(wp), parameter :: GONE = 40.0_wp
    !> 1 minus the cosine of the angle, 60 degrees, beyond which two parts do not describe the turn [-].
    real(wp), parameter :: LARGEST = 0.5_wp
@@ -192,8 +192,8 @@ contains
       end do
    end subroutine add_changes_of_faded
 
-   !> What is left of the first part at a pseudo-time that changes by dt, and its change [-]; zeros where that is below
-   !> rounding. Derivative of docs/theory/integration.md section 2.2.
+   !> Share that is left of the first part at a pseudo-time that changes by dt, and the change of this share [-]; zeros
+   !> where it is below rounding. Derivative of docs/theory/integration.md section 2.2.
    pure subroutine change_of_left(transient, fading, time, dt, left, change)
       type(transient_t), intent(in) :: transient
       type(fading_t), intent(in) :: fading

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What happens between substeps: the mode of the coming one, reversals and returns of the memory, opening and closing
-!> at p_min, and what an accepted substep leaves behind.
+!> Transitions between substeps: the mode of the coming one, reversals and returns of the memory, opening and closing at
+!> p_min, and what an accepted substep leaves behind.
 module mud_transitions
    use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_kinds, only: wp
@@ -26,7 +26,7 @@ module mud_transitions
    public :: begin_phase, begin_substep, accept_substep, rate_is_known
 
 contains
-   !> What a trial holds before the first substep of an increment or phase. Its stress and rate are those of
+   !> Sets what a trial holds before the first substep of an increment or phase. Its stress and rate are those of
    !> begin_substep.
    pure subroutine begin_phase(it)
       type(integration_t), intent(inout) :: it
@@ -108,8 +108,8 @@ contains
       it%trial%margin = it%state%margin
    end subroutine begin_below_memory
 
-   !> At what it remembers the isotropic mechanism rests as well where compression ceases.
-   !> docs/theory/material.md section 4.10.
+   !> Lets the isotropic mechanism rest that is at its memory, where compression ceases. docs/theory/material.md section
+   !> 4.10.
    pure subroutine try_to_unload(par, it)
       type(params_t), intent(in) :: par
       type(integration_t), intent(inout) :: it

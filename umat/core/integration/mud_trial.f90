@@ -15,8 +15,8 @@ module mud_trial
    private
    public :: trial_t, take_step, error_norm
 
-   real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Of the error norm [-].
-   real(wp), parameter :: CONTRACTION_SCALE = 0.01_wp     !< Likewise [-].
+   real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Scale of the plastic shear in the error norm [-].
+   real(wp), parameter :: CONTRACTION_SCALE = 0.01_wp     !< Scale of the contraction in the error norm [-].
    !> Errors of stresses below this share of p_atm count as if the stress were that large: 1e-5 of 0.1 kPa is nothing
    !> that a host could see, and costs thousands of rates an update [-].
    real(wp), parameter :: SMALL_STRESS = 0.01_wp
@@ -26,20 +26,21 @@ module mud_trial
       real(wp) :: rates(NY, MAX_STAGES)
       real(wp) :: y0(NY), y(NY)
       real(wp) :: points(NY, 2:MAX_STAGES)   !< Where the stages beyond the first stand.
-      type(rate_t) :: w(MAX_STAGES) !< What each stage's rate went through; the first is that of the memory as it is.
+      type(rate_t) :: w(MAX_STAGES) !< Rates of the stages with all intermediate results; the first is that of the
+                                    !< memory as it is.
       integer :: mode
       logical :: pressed            !< The bounding surface was met inside the elastic domain: ordinary rates follow.
       real(wp) :: r_in(6)
       real(wp) :: time              !< Pseudo-time of y0 [-].
       logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
-      integer :: openings           !< How often p' has fallen to p_min in this increment or phase.
-      type(relaxation_t) :: relaxation   !< Its stiff direction, of speed 0 where the substep is explicit.
-      type(transient_t) :: transient     !< What fades of its rates; not of those in w.
+      integer :: openings           !< Number of times that p' has fallen to p_min in this increment or phase.
+      type(relaxation_t) :: relaxation   !< Stiff direction of the rates, of speed 0 where the substep is explicit.
+      type(transient_t) :: transient     !< Parts of the rates that fade; those in w are without them.
       real(wp) :: parts             !< Void ratio at which the grains of a held point part [-].
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
-      real(wp) :: margin            !< Of the isotropic memory at y0; read where the mechanism rests [-].
+      real(wp) :: margin            !< Margin of the isotropic memory at y0; read where the mechanism rests [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
-      type(interrupted_t) :: process   !< That process.
+      type(interrupted_t) :: process   !< The interrupted process of that number.
    end type trial_t
 contains
    !> One trial substep from the first rate that the trial holds. h is a share of inc [-]. What is not finite stays in

@@ -8,7 +8,7 @@ module mud_elastic
    public :: bulk_modulus, bulk_slope, shear_modulus, shear_slope, swelling_slope, elastic_tangent, add_elastic, &
              BULK_EXPONENT, SHEAR_EXPONENT, STIFF_ABOVE
 
-   real(wp), parameter :: BULK_EXPONENT = 2.0_wp/3.0_wp, SHEAR_EXPONENT = 0.5_wp   !< Of p' in K and in G [-].
+   real(wp), parameter :: BULK_EXPONENT = 2.0_wp/3.0_wp, SHEAR_EXPONENT = 0.5_wp   !< Exponents of p' in K and in G [-].
    !> Void ratio of eq. (3) at which G vanishes: its square grows again beyond, where it means nothing [-].
    real(wp), parameter :: STIFF_ABOVE = 2.97_wp
 contains
@@ -63,7 +63,7 @@ contains
       call add_elastic(k, g, c)
    end function elastic_tangent
 
-   !> The same, added to c [kPa].
+   !> Adds the elastic stiffness of the moduli k, g to c [kPa].
    pure subroutine add_elastic(k, g, c)
       real(wp), intent(in) :: k, g
       real(wp), intent(inout) :: c(6, 6)

@@ -11,18 +11,19 @@ module mud_fluidity
    private
    public :: fluidity_t, NOT_FLUID, fluidity_at, growth, growth_slopes, recovery
 
-   !> What a rate takes from the fluidity.
+   !> Fluidity of a point and its factors in a rate.
    type :: fluidity_t
       real(wp) :: ell      !< fluidity [-]
       real(wp) :: weight   !< w, 1 at p' = 0 and 0 above p_ell [-]
-      real(wp) :: factor   !< of A_0 and b_0 [-]
+      real(wp) :: factor   !< factor on A_0 and b_0 [-]
       real(wp) :: by_p, by_ell   !< d ln factor/dp' and /d ell [1/kPa, -]
       real(wp) :: weight_by_p    !< dw/dp' [1/kPa]
    end type fluidity_t
    !> The option off, or p' above its range.
    type(fluidity_t), parameter :: NOT_FLUID = fluidity_t(0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 contains
-   !> Of a fluidity ell >= 0 [-] at p' > 0 [kPa], not checked. docs/theory/material.md section 4.11.
+   !> Fluidity, its weight and factors with their slopes, of ell >= 0 [-] at p' > 0 [kPa], not checked.
+   !> docs/theory/material.md section 4.11.
    pure function fluidity_at(par, ell, p) result(fluidity)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: ell, p
@@ -46,7 +47,7 @@ contains
       growth = par%c_ell*fluidity%weight*(1.0_wp - fluidity%ell/par%ell_max)
    end function growth
 
-   !> Its slopes by p' and by the fluidity [1/kPa, -].
+   !> Slopes of the growth of the fluidity by p' and by the fluidity [1/kPa, -].
    pure function growth_slopes(par, fluidity) result(slopes)
       type(params_t), intent(in) :: par
       type(fluidity_t), intent(in) :: fluidity

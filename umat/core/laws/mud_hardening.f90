@@ -37,12 +37,13 @@ module mud_hardening
    type(isotropic_t), parameter :: NO_HARDENING = isotropic_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &
       0.0_wp, 0.0_wp, .false.)
 
-   !> What the mechanism depends on: ln p', e, ln f, df/de, half of |r|^2, and ln |r| on the bounding surface.
+   !> Arguments of the slopes of the mechanism: ln p', e, ln f, df/de, half of |r|^2, and ln |r| on the bounding
+   !> surface.
    integer, parameter :: BY_P = 1, BY_E = 2, BY_F = 3, BY_F_E = 4, BY_R = 5, BY_R_B = 6
    !> Slopes of the compliance.
    type :: isotropic_slopes_t
-      real(wp) :: a(BY_P:BY_R_B)   !< of a [-]
-      real(wp) :: b(BY_P:BY_R_B)   !< of b [1/kPa] ...
+      real(wp) :: a(BY_P:BY_R_B)   !< slopes of a [-]
+      real(wp) :: b(BY_P:BY_R_B)   !< slopes of b [1/kPa] ...
       real(wp) :: b_f_pc           !< ... and by df/dp_c [-]
    end type isotropic_slopes_t
 contains
@@ -92,8 +93,8 @@ contains
       iso%b = -iso%share*iso%f*bond%df_dpc/bond%f
    end function isotropic_hardening
 
-   !> Its slopes, where it acts. Arguments as in isotropic_hardening, r_b as in shear_weight; kappa rises as the cubic
-   !> root of p'.
+   !> Slopes of the isotropic mechanism where it acts. Arguments as in isotropic_hardening, r_b as in shear_weight;
+   !> kappa rises as the cubic root of p'.
    pure function isotropic_slopes(par, bond, e, kappa, r_b, iso) result(slopes)
       type(params_t), intent(in) :: par
       type(bonding_t), intent(in) :: bond

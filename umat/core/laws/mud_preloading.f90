@@ -15,15 +15,15 @@ module mud_preloading
    !> ln of a contraction that has no effect: beside it any other sum is what it is without [-].
    real(wp), parameter :: NO_CONTRACTION = -600.0_wp
 
-   !> What is the same in every direction.
+   !> Parts of cyclic preloading that are the same in every direction.
    type :: preloading_t
       real(wp) :: chi      !< chi' > 0, contraction of other processes [-]
       real(wp) :: virgin   !< w = 2 c_chi v/x**2, v what a virgin process contracts up to x [-]
       real(wp) :: s        !< [-]
    end type preloading_t
 contains
-   !> Of the contraction chi of other processes, of ratio = M^d/M^b, A_0 and b_0 = h x > 0. All [-]; nothing is checked.
-   !> docs/theory/material.md section 4.9.
+   !> Cyclic preloading by the contraction chi of other processes, with ratio = M^d/M^b, A_0 and b_0 = h x > 0. All [-];
+   !> nothing is checked. docs/theory/material.md section 4.9.
    pure function preloading_of(par, chi, ratio, a_0, b_0) result(preloading)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: chi, ratio, a_0, b_0
@@ -34,8 +34,8 @@ contains
       preloading%s = par%s_chi
    end function preloading_of
 
-   !> What preloading leaves of D and 1/h at (r - r_in):n = x, not below its floor; f, and d ln f/d ln q: df/dx is
-   !> slope f 2/x. All [-]; docs/theory/material.md section 4.9.
+   !> Lowers D and 1/h at (r - r_in):n = x, not below its floor, to what preloading leaves of them; f, and d ln f/d ln
+   !> q: df/dx is slope f 2/x. All [-]; docs/theory/material.md section 4.9.
    pure subroutine preload(preloading, x, d, h_b, f, slope)
       type(preloading_t), intent(in) :: preloading
       real(wp), intent(in) :: x

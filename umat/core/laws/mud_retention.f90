@@ -11,7 +11,7 @@ module mud_retention
              along_t, along_raw_branch, follow_branches, curve_at, ON_CURVE
 
    real(wp), parameter :: EULER = 2.7182818284590452_wp      !< exp(1)
-   !> Beyond it exp(1) is lost in exp(1) + a, and a might overflow.
+   !> Logarithm beyond which exp(1) is lost in exp(1) + a, and a might overflow.
    real(wp), parameter :: LOG_LARGE = 200.0_wp
    real(wp), parameter :: LARGEST_LOG = 69.0_wp   !< ln of the largest ln(exp(1) + a) that is looked at [-].
    !> S_w this close to a main curve, as a share of S_max, is on it: rounding of S_w, which near S_max would be a large
@@ -34,21 +34,22 @@ module mud_retention
    !> A curve of eq. (24).
    type :: main_curve_t
       real(wp) :: log_entry   !< ln(P/P_a), P its suction of eq. (24) [-]
-      real(wp) :: n, m        !< Its exponents [-].
+      real(wp) :: n, m        !< Exponents of eq. (24) [-].
    end type main_curve_t
 
    !> A point of it.
    type :: on_main_curve_t
       real(wp) :: s_w, slope  !< S_w and dS_w/d ln x [-]
-      real(wp) :: share, log_sum   !< As in saturation_t.
+      real(wp) :: share, log_sum   !< Terms of eq. (24), as in saturation_t.
    end type on_main_curve_t
 
    !> A point of a branch: S_w with its first two derivatives by ln x, and those of S_w and slope by q ln offset [-].
    type :: along_t
       real(wp) :: s_w, slope, bend, with_offset, slope_with_offset
-      integer :: curve   !< Which curve is followed: a number that changes where S_w has a kink.
+      integer :: curve   !< Number of the curve that is followed; it changes where S_w has a kink.
    end type along_t
-   integer, parameter :: FREE = 0, BESIDE_MAIN = 1, SLID = 2, NEXT_BRANCH = 3   !< Of curve, and their period.
+   !> Numbers of the curve, and their period.
+   integer, parameter :: FREE = 0, BESIDE_MAIN = 1, SLID = 2, NEXT_BRANCH = 3
 contains
    !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero
    !> slopes. On a scanning branch that of docs/theory/material.md section 2.1.1. e > 0 is not checked.
@@ -270,7 +271,7 @@ contains
 
    !> Number of the curve that is followed at ln(x/P_a) [-]: another one where S_w has had a kink on the way.
    pure integer function curve_at(par, log_x)
-      type(params_t), intent(in) :: par   !< Of a branch.
+      type(params_t), intent(in) :: par   !< Parameters with a branch.
       real(wp), intent(in) :: log_x
       type(along_t) :: along
       logical :: limited

@@ -17,15 +17,15 @@ module mud_scanning
    public :: path_t, begin_path, move_along, list_passed, branch_of, saturation_after, keep_turns, begin_at_turn, &
              find_least, check_curves, check_saturation, preset_saturation
 
-   real(wp), parameter :: PRESET_ROUNDING = 1.0e-6_wp   !< Of a preset of six digits, as a share of S_max [-].
+   real(wp), parameter :: PRESET_ROUNDING = 1.0e-6_wp   !< Rounding of a preset of six digits, as a share of S_max [-].
    !> Suctions at which the main curves are compared: from S_w = S_max but some 1e-8 to a million times P_a; ln(x/P_a)
    !> of both ends, the first with n. AS_MUCH: what rounding so close to S_max makes of ln P_aw [-].
    integer, parameter :: POINTS = 200
    real(wp), parameter :: WET_END = -18.0_wp, DRY_END = 14.0_wp, AS_MUCH = 1.0e-6_wp
    integer, parameter :: HALVINGS = 50
-   real(wp), parameter :: LARGEST_SCALE = 1.0e6_wp      !< Of a branch: beyond it the loop is rounding [-].
+   real(wp), parameter :: LARGEST_SCALE = 1.0e6_wp      !< Scale of a branch beyond which its loop is rounding [-].
 
-   !> Where a point is on its way between the main curves.
+   !> Place of a point on its way between the main curves.
    type :: path_t
       real(wp) :: log_x, s_w   !< The present point [-].
       type(turns_t) :: turns
@@ -60,7 +60,8 @@ contains
       if (to <= NO_SUCTION) path = path_t(NO_SUCTION, par%s_max, NO_TURNS)
    end subroutine move_along
 
-   !> The same, and the suctions of the n turning points that are passed, in their order; without suction they are kept.
+   !> Moves a path along and lists the suctions of the n turning points that are passed, in their order; without suction
+   !> they are kept.
    pure subroutine list_passed(to, path, passed, n)
       real(wp), intent(in) :: to
       type(path_t), intent(inout) :: path
@@ -94,7 +95,7 @@ contains
    !> Parameters whose saturation is that along the branch of a point. Closed form of docs/theory/material.md section
    !> 2.1.1; nothing is refused.
    pure function branch_of(par, path) result(branch)
-      type(params_t), intent(in) :: par   !< Of the material.
+      type(params_t), intent(in) :: par   !< Parameters of the material.
       type(path_t), intent(in) :: path
       type(params_t) :: branch
       integer :: k
@@ -172,7 +173,7 @@ contains
    !> branch before it. docs/theory/material.md section 2.1.1.
    pure function begin_at_turn(par, path, slope) result(branch)
       type(params_t), intent(in) :: par
-      type(path_t), intent(in) :: path    !< Its last turning point is the turn.
+      type(path_t), intent(in) :: path    !< Path whose last turning point is the turn.
       real(wp), intent(in) :: slope       !< dS_w/d ln x of the branch before, there [-].
       type(params_t) :: branch
       type(along_t) :: here, target
@@ -205,7 +206,7 @@ contains
    pure subroutine saturation_after(par, p_c, e, path, sat, branch)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e
-      type(path_t), intent(inout) :: path   !< That of the state; on return that of the end.
+      type(path_t), intent(inout) :: path   !< Path of the state; on return that of the end.
       type(saturation_t), intent(inout) :: sat
       type(params_t), intent(out) :: branch
       real(wp) :: log_x, s_w
@@ -307,8 +308,8 @@ contains
       if (is_finite(s_w)) s_w = max(min(s_w, bounds(2)), bounds(1))
    end subroutine preset_saturation
 
-   !> That S_w of a state lies between the main curves at its suction [kPa] and void ratio [-]. One that is not finite,
-   !> or outside by more than 1e-6 S_max, is MUD_BAD_STATE; a good one leaves status as it is.
+   !> Checks that S_w of a state lies between the main curves at its suction [kPa] and void ratio [-]. One that is not
+   !> finite, or outside by more than 1e-6 S_max, is MUD_BAD_STATE; a good one leaves status as it is.
    pure subroutine check_saturation(par, p_c, e, s_w, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: p_c, e, s_w
@@ -397,8 +398,8 @@ contains
       end subroutine add_least
    end function find_least
 
-   !> Of the sign of d ln offset/d ln x along the opposite main curve: q (d ln y/d ln x - (x/y)^q), with y of the main
-   !> curve at the same S_w. 0 where no water moves.
+   !> Number with the sign of d ln offset/d ln x along the opposite main curve: q (d ln y/d ln x - (x/y)^q), with y of
+   !> the main curve at the same S_w. 0 where no water moves.
    pure real(wp) function rise_of_offset(par, dries, log_x) result(rise)
       type(params_t), intent(in) :: par
       logical, intent(in) :: dries

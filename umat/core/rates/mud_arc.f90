@@ -13,7 +13,7 @@ module mud_arc
       real(wp) :: r_t, r_q      !< r
       real(wp) :: x_t, x_q      !< r - r_in
       real(wp) :: z_t, z_q      !< fabric, where it is added
-      real(wp) :: cubic(0:3)    !< of tr(n^3), by powers of sin(w), where it is added
+      real(wp) :: cubic(0:3)    !< coefficients of tr(n^3) by powers of sin(w), where it is added
    end type arc_t
 contains
    !> Arc from the unit direction n_t towards r, whose other end is q. Where r is parallel to n_t, but for `rounding`, q

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> Where a state is against the bounding surface, and how that changes: what events and the tension cut-off look at.
+!> Excess of a state over the bounding surface, and its changes, for events and the tension cut-off.
 module mud_bounding
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
@@ -23,9 +23,9 @@ contains
       psi = state_parameter(par, bond%f, e, p)
    end function psi_of
 
-   !> Its change with void ratio, suction and mean stress, and with ln x of the turn of a branch [-]. At e [-],
-   !> p_c and p [kPa], for their changes de [-], dp_c and dp [kPa], d_turn [-]; derivative of docs/theory/material.md
-   !> sections 2.1.1 and 3.2.
+   !> Change of the state parameter with void ratio, suction and mean stress, and with ln x of the turn of a branch [-].
+   !> At e [-], p_c and p [kPa], for their changes de [-], dp_c and dp [kPa], d_turn [-]; derivative of
+   !> docs/theory/material.md sections 2.1.1 and 3.2.
    pure real(wp) function change_of_psi(par, bonded, e, p_c, p, de, dp_c, dp, d_turn) result(change)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded
@@ -56,7 +56,8 @@ contains
       excess = r_norm/bounding_norm(par, r, r_norm, bounding_ratio(par, psi)) - 1.0_wp
    end function excess
 
-   !> Its change with psi and r [-]. 0 for r = 0; derivative of docs/theory/material.md sections 3.3 and 3.4.
+   !> Change of the excess over the bounding surface with psi and r [-]. 0 for r = 0; derivative of
+   !> docs/theory/material.md sections 3.3 and 3.4.
    pure real(wp) function change_of_excess(par, psi, r, dpsi, dr) result(change)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: psi, r(6), dpsi, dr(6)

@@ -6,7 +6,7 @@
 !> mud_direction_equation; here its roots are looked for.
 module mud_direction
    use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
-   use mud_branchless, only: positive, smaller
+   use mud_branchless, only: smaller
    use mud_critical_state, only: lode_factor, lode_slope
    use mud_direction_equation, only: equation_t, equation_of, find_moduli, slopes_t, slopes_at
    use mud_flow, only: dilatancy_factor
@@ -19,17 +19,18 @@ module mud_direction
    public :: find_direction
 
    real(wp), parameter :: PARALLEL = 1.0e-13_wp          !< r normal to t below this share of r is rounding [-].
-   real(wp), parameter :: ROOT_TOLERANCE = 1.0e-14_wp    !< Of the direction equation, share of its terms [-].
+   real(wp), parameter :: ROOT_TOLERANCE = 1.0e-14_wp    !< Tolerance of the direction equation, share of its terms [-].
    integer, parameter :: MAX_ITERATIONS = 80             !< Bisection alone needs 53.
-   integer, parameter :: POINTS = 8   !< Of the scan for roots where a bracket is not certain: looked at together.
+   integer, parameter :: POINTS = 8   !< Points of the scan for roots where a bracket is not certain: looked at
+                                      !< together.
    real(wp), parameter :: NOT_FAR = 0.5_wp   !< Cosine up to which a rising x excludes roots [-].
-   !> Where r is so nearly along t that x changes by less than this share of the floor up to the root, the residual is
-   !> straight. In triaxial tests of a host r leaves t by rounding alone, and so would decide what follows [-].
+   !> Share of the floor below which the change of x up to the root makes the residual straight: r is nearly along t. In
+   !> triaxial tests of a host r leaves t by rounding alone, and so would decide what follows [-].
    real(wp), parameter :: NEARLY_ALONG = 1.0e-6_wp
 
    !> The direction equation at one angle.
    type :: trial_t
-      real(wp) :: cosine, sine      !< of the angle w
+      real(wp) :: cosine, sine      !< cosine and sine of the angle w
       real(wp) :: residual          !< gamma sin(w) - beta r:q [kPa]
       real(wp) :: scale             !< gamma + |beta| r:q [kPa]
       real(wp) :: admissible        !< y |t|, positive if admissible [kPa]

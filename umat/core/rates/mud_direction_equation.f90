@@ -18,7 +18,7 @@ module mud_direction_equation
    real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp   !< Smaller divisors would only make a cap that never acts [-].
    real(wp), parameter :: NO_LIMIT = 1.0e100_wp     !< A cap that is off.
 
-   !> What is the same in every direction.
+   !> Terms of the direction equation that are the same in every direction.
    type :: equation_t
       real(wp) :: two_g, k_e      !< 2 G, K_e [kPa]
       real(wp) :: two_thirds_p    !< [kPa]
@@ -41,7 +41,7 @@ module mud_direction_equation
       real(wp) :: d_ln, h_ln   !< both by ln of the fluidity's factor, which v of the preloading does not feel
    end type slopes_t
 
-   !> How the direction n of a rate turns: the equation's slopes there, and what a change of its terms is divided by.
+   !> Turn of the direction n of a rate: the equation's slopes there, and what a change of its terms is divided by.
    type :: turn_t
       type(slopes_t) :: slopes
       real(wp), dimension(6) :: h_n, d_n, gamma_n   !< Derivatives of 1/h, D, gamma by n, [-, -, kPa].
@@ -49,7 +49,8 @@ module mud_direction_equation
       real(wp) :: inverse(3, 3)
    end type turn_t
 contains
-   !> Of a rate whose state, moduli and choice of the isotropic mechanism are known; units as in rate_t.
+   !> Direction equation of a rate whose state, moduli and choice of the isotropic mechanism are known; units as in
+   !> rate_t.
    pure function equation_of(par, w) result(eq)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
@@ -96,7 +97,7 @@ contains
    !> docs/theory/material.md section 4.2.
    pure subroutine slopes_at(par, w, at, s)
       type(params_t), intent(in) :: par
-      type(rate_t), intent(in) :: w       !< Its state, moduli and choice of the isotropic mechanism are read.
+      type(rate_t), intent(in) :: w   !< Rate, of which state, moduli and choice of the isotropic mechanism are read.
       type(moduli_t), intent(in) :: at
       type(slopes_t), intent(out) :: s
       real(wp) :: stiffness, by_stiffness, f, per_x

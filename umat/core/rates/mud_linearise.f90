@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> What the derivatives of one rate share, whatever the direction in which its arguments change, and how what it takes
-!> from the point alone changes - moduli, state parameter, bounding ratio, isotropic mechanism - along directions that
-!> stand side by side; docs/theory/integration.md section 5.3.
+!> Terms that the derivatives of one rate share, whatever the direction in which its arguments change, and changes of
+!> what the rate takes from the point alone - moduli, state parameter, bounding ratio, isotropic mechanism - along
+!> directions that stand side by side; docs/theory/integration.md section 5.3.
 module mud_linearise
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
@@ -19,12 +19,12 @@ module mud_linearise
    private
    public :: linearised_t, linearise, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, NRATES
 
-   !> What all directions share.
+   !> Terms of a derivative of a rate that all directions share.
    type, extends(turn_t) :: linearised_t
       logical :: held_p                     !< p' is at its lower bound: it does not follow the stress.
       real(wp) :: d_v, whole_v, d_pc        !< Traces of the strain rate that loads and of the whole one; suction rate.
-      real(wp) :: curvature(3)              !< of f [1/kPa2, 1/kPa, -]
-      real(wp) :: with_turn(3)              !< of f, df/dp_c, df/de with ln x of the branch's turn [-, 1/kPa, -]
+      real(wp) :: curvature(3)              !< curvatures of f [1/kPa2, 1/kPa, -]
+      real(wp) :: with_turn(3)              !< slopes of f, df/dp_c, df/de by ln x of the branch's turn [-, 1/kPa, -]
       real(wp) :: psi_f, psi_p, m_b_psi     !< slopes of psi by f and p', of M^b by psi [-, 1/kPa, -]
       real(wp) :: k_slope, g_slope, b_slope !< d ln K/de, d ln G/de, d ln b_0/de [-]
       real(wp) :: per_p, per_f, per_gamma, per_y   !< Reciprocals of p', f, gamma, y.
@@ -35,12 +35,12 @@ module mud_linearise
 
    integer, parameter :: NRATES = 16   !< sigma'(6), z(6), plastic shear, ln chi', contraction, fluidity.
 
-   !> How the arguments of a rate change beside stress, fabric and memory.
+   !> Changes of the arguments of a rate beside stress, fabric and memory.
    type :: changes_t
-      real(wp), dimension(LANES) :: e, p_c, d_pc   !< of void ratio, suction and its rate [-, kPa, kPa]
-      type(loading_t) :: loading                   !< of the strain rate that loads
-      logical :: scans                             !< Its branch changes with its turn; otherwise turn is not set.
-      real(wp) :: turn(LANES)                      !< of ln x of that turn [-]
+      real(wp), dimension(LANES) :: e, p_c, d_pc   !< changes of void ratio, suction and its rate [-, kPa, kPa]
+      type(loading_t) :: loading                   !< changes of the strain rate that loads
+      logical :: scans                             !< The branch changes with its turn; otherwise turn is not set.
+      real(wp) :: turn(LANES)                      !< changes of ln x of that turn [-]
    end type changes_t
 
    !> Changes of a tensor as a sum. Of those of the whole strain rate, of stress, and of what loads as far as it is not
@@ -51,14 +51,14 @@ module mud_linearise
    end type sum_t
    type(sum_t), parameter :: NO_SUM = sum_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 
-   !> What lies between the changes of a rate's arguments and those of its results.
+   !> Changes between those of a rate's arguments and those of its results.
    type :: lanes_t
       real(wp), dimension(LANES) :: mean, v          !< a third of the trace of stress; trace of the strain rate
-      real(wp), dimension(LANES) :: p, share         !< of p', and over p'
-      real(wp), dimension(LANES) :: f, f_pc, f_e     !< of f, df/dp_c, df/de
+      real(wp), dimension(LANES) :: p, share         !< changes of p', and over p'
+      real(wp), dimension(LANES) :: f, f_pc, f_e     !< changes of f, df/dp_c, df/de
       real(wp), dimension(LANES) :: k, g, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
       real(wp), dimension(LANES) :: n_dr, h_dr, d_dr, gamma_dr   !< n:dr, and of the gradients along n
-      real(wp), dimension(LANES) :: dl, flow         !< of L and of L D
+      real(wp), dimension(LANES) :: dl, flow         !< changes of L and of L D
       type(sum_t) :: turn                            !< dn
    end type lanes_t
 contains
@@ -103,7 +103,8 @@ contains
       lin%per_y = 1.0_wp/w%y
    end subroutine linearise
 
-   !> What change_point leaves where only the strain rate and the suction rate change. Units as in change_point.
+   !> Sets the changes that change_point leaves where only the strain rate and the suction rate change. Units as in
+   !> change_point.
    pure subroutine rest(w, changes, x)
       type(rate_t), intent(in) :: w
       type(changes_t), intent(in) :: changes

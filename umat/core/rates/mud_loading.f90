@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> How the part of a strain rate that loads changes along the directions of a derivative: a sum of the changes of the
+!> Changes of the part of a strain rate that loads along the directions of a derivative: a sum of the changes of the
 !> strain, of those of the elastic domain at the start, and of two fixed tensors.
 module mud_loading
    use mud_kinds, only: wp
@@ -11,8 +11,8 @@ module mud_loading
    !> The rates themselves and the parts of their changes, [-] per unit of pseudo-time.
    type :: loading_t
       real(wp) :: basis(6, 2)             !< the fixed tensors: what loads is the sum of part times them
-      logical :: turns                    !< it turns; otherwise the second tensor is zero
-      real(wp) :: part(2), whole(2)       !< of what loads, of the whole strain rate
+      logical :: turns                    !< the domain turns; otherwise the second tensor is zero
+      real(wp) :: part(2), whole(2)       !< factors of what loads, of the whole strain rate
       real(wp) :: of_strain, of_centre    !< factors of the changes of strain rate and centre
       real(wp) :: along(LANES, 2)         !< changes along the fixed tensors
    end type loading_t

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What one rate gives: the state as it sees it, the direction with the moduli there, and the rates.
+!> Results of one rate: the state as it sees it, the direction with the moduli there, and the rates.
 module mud_rate
    use mud_bonding, only: bonding_t
    use mud_fluidity, only: fluidity_t
@@ -54,7 +54,7 @@ module mud_rate
       real(wp) :: d_sigma(6)       !< [kPa]
       real(wp) :: d_z(6)           !< [-]
       real(wp) :: d_eps_q          !< plastic shear, sqrt(2/3) L [-]
-      real(wp) :: d_log_chi, d_chi_own   !< of ln chi', and of chi_o in contraction; 0 without preloading [-]
-      real(wp) :: d_ell            !< of the fluidity by shear; 0 with the option off [-]
+      real(wp) :: d_log_chi, d_chi_own   !< rates of ln chi', and of chi_o in contraction; 0 without preloading [-]
+      real(wp) :: d_ell            !< rate of the fluidity by shear; 0 with the option off [-]
    end type rate_t
 end module mud_rate

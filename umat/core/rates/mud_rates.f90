@@ -148,7 +148,7 @@ contains
                    (ddot(w%r_moved, t) < par%x_floor*norm(t) .eqv. w%floored)
    end function is_certain
 
-   !> What depends on the state alone.
+   !> Evaluates the parts of a rate that depend on the state alone.
    pure subroutine evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
       type(params_t), intent(in) :: par
       logical, intent(in) :: bonded

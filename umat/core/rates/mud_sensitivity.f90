@@ -12,7 +12,7 @@ module mud_sensitivity
    use mud_params, only: params_t
    use mud_linearise, only: linearised_t, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, NRATES
    use mud_rate, only: rate_t
-   use mud_tensor, only: LANES, tensors_t, ddot, contractions, contracted, traces, ZERO_TENSORS
+   use mud_tensor, only: LANES, tensors_t, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: loading_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
    use mud_fluidity, only: growth, growth_slopes
@@ -29,13 +29,13 @@ contains
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       logical, intent(in) :: at_rest                  !< y, r_in and the changes of e and p_c are zero
-      !> Of sigma', z, ln chi', fluidity and, without effect, plastic shear and contraction [kPa, -, -].
+      !> Changes of sigma', z, ln chi', fluidity and, without effect, plastic shear and contraction [kPa, -, -].
       real(wp), intent(in) :: y(LANES, NRATES)
-      type(tensors_t), intent(in) :: r_in             !< of the memory [-]
-      type(tensors_t), intent(in) :: strain, centre   !< of strain rate and elastic domain [-]
+      type(tensors_t), intent(in) :: r_in             !< changes of the memory [-]
+      type(tensors_t), intent(in) :: strain, centre   !< changes of strain rate and elastic domain [-]
       type(changes_t), intent(in) :: changes
       logical, intent(in) :: stress_only              !< rates of fabric and plastic shear are not asked for: zeros
-      real(wp), intent(out) :: rates(LANES, NRATES)   !< as y
+      real(wp), intent(out) :: rates(LANES, NRATES)   !< changes of the rates, as y
       real(wp), intent(out), optional :: dn(LANES, 6)
       type(lanes_t) :: x
 
@@ -81,8 +81,8 @@ contains
    pure function changes_of_drive(w, lin, y, strain, centre, changes) result(c)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES)        !< of sigma', z and, without effect, plastic shear [kPa, -, -]
-      type(tensors_t), intent(in) :: strain, centre   !< of strain rate and elastic domain [-]
+      real(wp), intent(in) :: y(LANES, NRATES)   !< changes of sigma', z and, without effect, plastic shear [kPa, -, -]
+      type(tensors_t), intent(in) :: strain, centre   !< changes of strain rate and elastic domain [-]
       type(changes_t), intent(in) :: changes
       real(wp) :: c(LANES)
       type(lanes_t) :: x

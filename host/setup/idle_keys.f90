@@ -8,11 +8,10 @@ module idle_keys
    use scene_keys, only: keys_of_scenes
    use scene_types, only: scene_t, WITH_P_W, WITH_P_C
    use texts, only: lower_case
+   use warnings, only: add_warning, WARNING_LENGTH
    implicit none (type, external)
    private
-   public :: list_idle_keys, add_warning, WARNING_LENGTH
-
-   integer, parameter :: WARNING_LENGTH = 500
+   public :: list_idle_keys
 contains
    !> Adds a warning for every key and every definition of a scene that has no effect.
    subroutine list_idle_keys(scene, warnings)
@@ -125,19 +124,4 @@ contains
          if (lower_case(group%entries(i)%key) == 'name') name = trim(group%entries(i)%values(1))
       end do
    end function name_of
-
-   !> Adds a text to the warnings.
-   subroutine add_warning(text, warnings)
-      character(*), intent(in) :: text
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow by one. (warnings)
-      character(WARNING_LENGTH), allocatable :: more(:)
-      integer :: n
-
-      n = 0
-      if (allocated(warnings)) n = size(warnings)
-      allocate (more(n + 1))
-      if (n > 0) more(:n) = warnings
-      more(n + 1) = text
-      call move_alloc(more, warnings)
-   end subroutine add_warning
 end module idle_keys

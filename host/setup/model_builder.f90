@@ -2,14 +2,13 @@
 !> Builds the model of a scene: mesh, materials, supports, loads and contacts with every name resolved, the
 !> unknowns numbered.
 module model_builder
+   use acting_places, only: check_ground, check_sides
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
    use boundary_builder, only: build_plates, build_boundaries
    use boundary_loads, only: shape_loads, ties_of
    use degrees_of_freedom, only: number_unknowns
    use free_bodies, only: check_bodies
-   use staged_ground, only: check_staged_ground, check_sides
-   use strength_builder, only: build_strengths
    use given_pressures, only: add_centers, give_pressures, check_places
    use mesh_builder, only: build_mesh
    use mesh_look, only: check_carried
@@ -20,6 +19,7 @@ module model_builder
    use scene_types, only: scene_t, WITH_P_W, WITH_P_C
    use stage_builder, only: choose_schemes
    use shape_functions, only: RULES
+   use term_registry, only: build_terms
    use texts, only: whole
    !$ use omp_lib, only: omp_get_max_threads
    implicit none (type, external)
@@ -46,10 +46,10 @@ contains
       if (fault%code == 0) call build_plates(model, fault)
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
       if (fault%code == 0) call build_boundaries(model, fault)
-      if (fault%code == 0) call build_strengths(model, fault)
+      if (fault%code == 0) call build_terms(model, fault)
       if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
-      if (fault%code == 0) call check_staged_ground(model, fault)
+      if (fault%code == 0) call check_ground(model, fault)
       if (fault%code == 0) call check_sides(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call give_pressures(model)

@@ -16,9 +16,10 @@ module scene_keys
    use retention_groups, only: RETENTION_KEYS
    use scene_tolerances, only: ask_steps, ask_stress
    use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_item_t, initial_t, amplitude_t, stage_t, fix_t, &
-                          load_t, plate_t, contact_pair_t, absorber_t, tie_t, point_t, strength_t, place_of, &
+                          load_t, plate_t, contact_pair_t, tie_t, point_t, item_of, place_of, &
                           LOAD_FORCE_Z, LOAD_MOMENT, PRESCRIBED_TURN
    use spelling, only: nearest_name
+   use term_registry, only: own_groups, declare_keys
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
@@ -27,7 +28,7 @@ module scene_keys
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    integer, parameter :: MANY = 1000000
    character(12), parameter :: GROUPS(*) = [character(12) :: 'scene', 'mesh', 'fluids', 'retention', 'permeability', &
-      'region', 'strength', 'initial', 'history', 'stage', 'fix', 'load', 'absorbing', 'tie', 'plate', 'contact', &
+      'region', 'initial', 'history', 'stage', 'fix', 'load', 'tie', 'plate', 'contact', &
       'point']
    character(*), parameter :: LAW_NAME = 'name, for the key material of &region'
    character(*), parameter :: STAGES = 'names of stages; default: all'
@@ -38,8 +39,10 @@ contains
       type(key_table_t) :: table
       type(scene_t) :: nothing
       type(fault_t) :: fault
+      character(12), allocatable :: groups_of_terms(:)
       integer :: g
 
+      allocate (groups_of_terms, source=own_groups())
       allocate (table%keys(0), table%group%entries(0))
       call make_lists(nothing)
       do g = 1, size(GROUPS)
@@ -47,6 +50,11 @@ contains
          ! What a group lacks is no fault of a list.
          fault = fault_t()
          call take_group(table, nothing, fault)
+         call declare_keys(table)
+      end do
+      do g = 1, size(groups_of_terms)
+         table%group%name = groups_of_terms(g)
+         call declare_keys(table)
       end do
       call move_alloc(table%keys, keys)
    end function keys_of_scenes
@@ -56,8 +64,8 @@ contains
       type(scene_t), intent(inout) :: scene
 
       allocate (scene%materials(0), scene%retentions(0), scene%permeabilities(0), scene%regions(0), &
-                scene%strengths(0), scene%initials(0), scene%amplitudes(0), scene%stages(0), scene%fixes(0), &
-                scene%loads(0), scene%plates(0), scene%contacts(0), scene%absorbers(0), scene%ties(0), scene%points(0))
+                scene%initials(0), scene%amplitudes(0), scene%stages(0), scene%fixes(0), &
+                scene%loads(0), scene%plates(0), scene%contacts(0), scene%ties(0), scene%points(0))
    end subroutine make_lists
 
    !> Reads the group of a table into a scene, &scene before others. Fault EXIT_INPUT: values contradict each other.
@@ -79,8 +87,6 @@ contains
          call take_permeability(k, scene, fault)
       case ('region')
          call take_region(k, scene)
-      case ('strength')
-         call take_strength(k, scene)
       case ('initial')
          call take_initial(k, scene, fault)
       case ('history')
@@ -91,8 +97,6 @@ contains
          call take_fix(k, scene)
       case ('load')
          call take_load(k, scene)
-      case ('absorbing')
-         call take_absorber(k, scene)
       case ('tie')
          call take_tie(k, scene)
       case ('plate')
@@ -102,16 +106,10 @@ contains
       case ('point')
          call take_point(k, scene)
       case default
-         call take_material(k, scene)
+         ! Groups of terms are read where these are built.
+         if (is_law(k%group%name)) call take_material(k, scene)
       end select
    end subroutine take_group
-
-   pure function item_of(group) result(item)
-      type(group_t), intent(in) :: group
-      type(scene_item_t) :: item
-
-      item = scene_item_t(group%file, group%line)
-   end function item_of
 
    subroutine take_scene(k, scene)
       type(key_table_t), intent(inout) :: k
@@ -258,24 +256,9 @@ contains
       call k%number('damping', region%damping, ZERO, BIG, 'force against the velocity over mass, dynamic stages [1/s]')
       call k%number('stiffness_damping', region%stiffness_damping, ZERO, BIG, &
                     'stress of the skeleton from its rate, dynamic stages [s]')
-      call k%texts('stages', region%stages, 'stages in which it is part of the ground; default: all')
       region%rest = .not. k%given('group')
       scene%regions = [scene%regions, region]
    end subroutine take_region
-
-   subroutine take_strength(k, scene)
-      type(key_table_t), intent(inout) :: k
-      type(scene_t), intent(inout) :: scene
-      type(strength_t) :: strength
-
-      strength%scene_item_t = item_of(k%group)
-      call k%text('material', strength%material_name, 'name of the material whose strength changes with time', REQUIRED)
-      call k%text('parameter', strength%parameter_name, &
-                  'what changes: M_c of a &mud; of a &umat props(1), props(2), ...', REQUIRED)
-      call k%text('history', strength%amplitude_name, 'factor on the parameter, 1 at the start', REQUIRED, &
-                  refers='history')
-      scene%strengths = [scene%strengths, strength]
-   end subroutine take_strength
 
    subroutine take_initial(k, scene, fault)
       type(key_table_t), intent(inout) :: k
@@ -491,26 +474,6 @@ contains
       call k%texts('stages', load%stages, STAGES)
       scene%loads = [scene%loads, load]
    end subroutine take_load
-
-   subroutine take_absorber(k, scene)
-      type(key_table_t), intent(inout) :: k
-      type(scene_t), intent(inout) :: scene
-      type(absorber_t) :: absorber
-
-      absorber%scene_item_t = item_of(k%group)
-      call k%text('group', absorber%group_name, 'boundary that lets waves out, in dynamic stages', REQUIRED)
-      call k%number('rho', absorber%rho, TINY_, 1000*ONE, &
-                    'density of the ground behind the boundary [Mg/m3]; default: the soil')
-      call k%number('c_p', absorber%c_p, TINY_, BIG, &
-                    'speed of pressure waves behind the boundary [m/s]; default: the soil''s')
-      call k%number('c_s', absorber%c_s, TINY_, BIG, &
-                    'speed of shear waves behind the boundary [m/s]; default: the soil''s')
-      call k%number('v_r', absorber%incoming(1), -BIG, BIG, 'velocity along r of the incoming wave [m/s]')
-      call k%number('v_z', absorber%incoming(2), -BIG, BIG, 'velocity along z of the incoming wave [m/s]')
-      call k%text('history', absorber%amplitude_name, 'factor on v_r and v_z', refers='history')
-      call k%texts('stages', absorber%stages, STAGES)
-      scene%absorbers = [scene%absorbers, absorber]
-   end subroutine take_absorber
 
    subroutine take_tie(k, scene)
       type(key_table_t), intent(inout) :: k

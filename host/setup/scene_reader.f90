@@ -10,6 +10,7 @@ module scene_reader
    use scene_keys, only: check_keys, make_lists, take_group
    use effect_switches, only: remove_effects
    use kinds, only: wp
+   use name_search, only: check_stages
    use scene_names, only: check_names
    use scene_refinement, only: refine_mesh
    use scene_settings, only: apply_settings
@@ -44,6 +45,7 @@ contains
       scene%fingerprint = fingerprint_of(groups)
       scene%hashes = hashes_of(groups)
       scene%groups = groups
+      scene%kept = [(.true., i=1, size(groups))]
       call make_lists(scene)
       ! &scene says how others are read.
       table%group = groups(findloc([(groups(i)%name, i=1, size(groups))], 'scene', dim=1))
@@ -54,7 +56,7 @@ contains
          table%group = groups(i)
          call take_group(table, scene, fault)
       end do
-      if (fault%code == 0) call check_stages(scene, fault)
+      if (fault%code == 0) call check_all_stages(scene, fault)
       if (fault%code == 0) call place_histories(scene, fault)
       if (fault%code == 0) call remove_effects(scene, fault)
       if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_mesh(scene%mesh, fault)
@@ -80,39 +82,22 @@ contains
    end subroutine check_counts
 
    !> Names of stages that nobody defines.
-   subroutine check_stages(scene, fault)
+   subroutine check_all_stages(scene, fault)
       type(scene_t), intent(in) :: scene
       type(fault_t), intent(inout) :: fault
       integer :: i
 
       do i = 1, size(scene%fixes)
-         call check(scene%fixes(i)%scene_item_t, scene%fixes(i)%stages)
+         call check_stages(scene%stages%name, scene%fixes(i)%scene_item_t, scene%fixes(i)%stages, fault)
       end do
       do i = 1, size(scene%loads)
-         call check(scene%loads(i)%scene_item_t, scene%loads(i)%stages)
-      end do
-      do i = 1, size(scene%absorbers)
-         call check(scene%absorbers(i)%scene_item_t, scene%absorbers(i)%stages)
+         call check_stages(scene%stages%name, scene%loads(i)%scene_item_t, scene%loads(i)%stages, fault)
       end do
       do i = 1, size(scene%contacts)
-         call check(scene%contacts(i)%scene_item_t, scene%contacts(i)%stages)
+         call check_stages(scene%stages%name, scene%contacts(i)%scene_item_t, scene%contacts(i)%stages, fault)
       end do
       do i = 1, size(scene%amplitudes)
-         call check(scene%amplitudes(i)%scene_item_t, scene%amplitudes(i)%stages)
+         call check_stages(scene%stages%name, scene%amplitudes(i)%scene_item_t, scene%amplitudes(i)%stages, fault)
       end do
-      do i = 1, size(scene%regions)
-         call check(scene%regions(i)%scene_item_t, scene%regions(i)%stages)
-      end do
-   contains
-      subroutine check(item, names)
-         type(scene_item_t), intent(in) :: item
-         character(*), intent(in) :: names(:)
-         integer :: k
-
-         do k = 1, size(names)
-            if (any(scene%stages%name == names(k)) .or. fault%code /= 0) cycle
-            call raise(fault, EXIT_GROUP, place_of(item)//'there is no stage '''//trim(names(k))//'''.')
-         end do
-      end subroutine check
-   end subroutine check_stages
+   end subroutine check_all_stages
 end module scene_reader

@@ -5,7 +5,8 @@ module scene_warnings
    use kinds, only: wp
    use faults, only: at_line
    use boundary_warnings, only: list_boundary_warnings
-   use idle_keys, only: list_idle_keys, add_warning, WARNING_LENGTH
+   use idle_keys, only: list_idle_keys
+   use warnings, only: add_warning, WARNING_LENGTH
    use initial_conditions, only: tension_t, balance_t
    use key_schema, only: line_of, given, get_number
    use material_elastic, only: elastic_t

@@ -1,0 +1,45 @@
+! SPDX-License-Identifier: MIT
+!> What a step is taken on: the matrix, what is prescribed, the states before and after, and the place in the stages.
+module solution
+   use kinds, only: wp
+   use equation_assembly, only: assembly_t
+   use linear_system, only: system_t
+   use porous_domain, only: state_t
+   use prescribed_values, only: constraint_t
+   use sparsity_pattern, only: pattern_t
+   implicit none (type, external)
+   private
+   public :: solution_t, stage_state_t
+
+   !> Place in the stages, and the step size.
+   type :: stage_state_t
+      integer :: stage = 0                     !< Number of the stage under way; 0: before the first.
+      integer :: step = 0                      !< Steps done in it.
+      integer :: cuts = 0, good = 0            !< Cuts in force; accepted steps since the last cut or growth.
+      real(wp) :: t_start = 0.0_wp             !< Time at its start [s].
+      real(wp) :: nominal = 0.0_wp             !< Step without cuts [s].
+      real(wp) :: factor = 1.0_wp              !< Share of it after cuts.
+      real(wp), allocatable :: x_start(:, :)   !< Unknowns at its start, which some boundaries hold.
+      !> (unknowns) What acted at once at the start and is applied evenly over the stage; not allocated: nothing [kN].
+      real(wp), allocatable :: sudden(:)
+   contains
+      procedure :: share_of
+   end type stage_state_t
+
+   type :: solution_t
+      type(pattern_t) :: pattern               !< Of the matrix; it grows with the contacts.
+      type(assembly_t) :: assembly
+      type(system_t) :: system
+      type(constraint_t) :: constraint
+      type(state_t) :: state, next             !< Before and after the step under way.
+      type(stage_state_t) :: at
+   end type solution_t
+contains
+   !> Share of the stage that is over at a time. [-]
+   pure real(wp) function share_of(self, duration, time) result(share)
+      class(stage_state_t), intent(in) :: self
+      real(wp), intent(in) :: duration, time   !< Of the stage [s].
+
+      share = min(1.0_wp, max(0.0_wp, (time - self%t_start)/duration))
+   end function share_of
+end module solution

@@ -1,0 +1,450 @@
+! SPDX-License-Identifier: MIT
+!> Absorbing boundaries (Lysmer & Kuhlemeyer 1969), &absorbing: dashpots of the impedances rho c_p and rho c_s of the
+!> ground behind the boundary, for pore pressures the outflow of a wave that goes on (its gradient is -1/c_p times its
+!> rate), and the force of a wave that comes in. Without keys of their own the impedances are those of the elements at
+!> the boundary in the initial state, undrained. Where a boundary begins to act, the forces that it held before stay, so
+!> that only what departs from that state leaves as a wave. docs/theory/host.md section 7.4.
+module absorbing
+   use acting_places, only: facing_edges, acting_stages
+   use archive, only: archive_t
+   use dashpots, only: dashpots_t
+   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
+   use equation_assembly, only: assemble
+   use exit_codes, only: EXIT_GROUP, EXIT_MATERIAL
+   use faults, only: fault_t, raise
+   use generalised_alpha, only: make_scheme, STATIC
+   use key_schema, only: REQUIRED, UNBOUNDED
+   use key_table, only: key_table_t
+   use kinds, only: wp
+   use material_point, only: response_t, report_t
+   use model_types, only: model_t, action_t, term_t, factor_at
+   use name_search, only: mesh_group, defined_name, check_stages
+   use namelists, only: group_t, LENGTH
+   use permeability_laws, only: relative_t, relative_permeability
+   use porous_domain, only: state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
+   use scene_types, only: place_of, item_of, groups_named
+   use solution, only: solution_t
+   use texts, only: short, whole
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: absorbing_t
+
+   character(*), parameter :: NAME = 'absorbing'
+   real(wp), parameter :: LEAST = 1/UNBOUNDED
+
+   !> A boundary through which waves leave, and may come in.
+   type, extends(action_t) :: side_t
+      real(wp) :: rho = 0.0_wp, c_p = 0.0_wp, c_s = 0.0_wp   !< Of the ground behind; 0: those of the soil.
+      real(wp) :: velocity(2) = 0.0_wp           !< Of the incoming wave at a factor of 1 [m/s].
+      integer :: dashpots = 0                    !< Its place among those of the constraint.
+      logical, allocatable :: held(:)            !< (unknowns) Displacements of the boundary.
+      real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
+   end type side_t
+
+   type, extends(term_t) :: absorbing_t
+      type(side_t), allocatable :: sides(:)
+      logical :: at_start = .false.              !< Of a stage: what the sides held is not known yet.
+   contains
+      procedure, nopass :: declare
+      procedure :: group, build, begin_run, begin_stage, before_step, exchange
+   end type absorbing_t
+
+   !> The ground behind an edge.
+   type :: behind_t
+      real(wp) :: normal = 0.0_wp, shear = 0.0_wp   !< Impedances rho c_p, rho c_s [kPa s/m].
+      real(wp) :: water = 0.0_wp, air = 0.0_wp      !< Outflow over the rate of the pressure, k/(eta c_p) [m/(kPa)].
+   end type behind_t
+contains
+   function group(self) result(name_of_group)
+      class(absorbing_t), intent(in) :: self
+      character(:), allocatable :: name_of_group
+
+      associate (unused => self)
+      end associate
+      name_of_group = NAME
+   end function group
+
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+      type(side_t) :: nothing
+      character(LENGTH) :: boundary, history
+
+      if (k%group%name == NAME) call take(k, nothing, boundary, history)
+   end subroutine declare
+
+   subroutine take(k, side, boundary, history)
+      type(key_table_t), intent(inout) :: k
+      type(side_t), intent(inout) :: side
+      character(LENGTH), intent(out) :: boundary, history
+
+      boundary = ''
+      history = ''
+      call k%text('group', boundary, 'boundary that lets waves out, in dynamic stages', REQUIRED)
+      call k%number('rho', side%rho, LEAST, 1000.0_wp, &
+                    'density of the ground behind the boundary [Mg/m3]; default: the soil')
+      call k%number('c_p', side%c_p, LEAST, UNBOUNDED, &
+                    'speed of pressure waves behind the boundary [m/s]; default: the soil''s')
+      call k%number('c_s', side%c_s, LEAST, UNBOUNDED, &
+                    'speed of shear waves behind the boundary [m/s]; default: the soil''s')
+      call k%number('v_r', side%velocity(1), -UNBOUNDED, UNBOUNDED, 'velocity along r of the incoming wave [m/s]')
+      call k%number('v_z', side%velocity(2), -UNBOUNDED, UNBOUNDED, 'velocity along z of the incoming wave [m/s]')
+      call k%text('history', history, 'factor on v_r and v_z', refers='history')
+      call k%texts('stages', side%stages, 'names of stages; default: all')
+   end subroutine take
+
+   !> The boundaries. Fault EXIT_GROUP: a boundary, history or stage that is not defined, or a group without edges.
+   subroutine build(self, model, there, fault)
+      class(absorbing_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t) :: table
+      character(LENGTH) :: boundary, history
+      integer :: i
+
+      allocate (groups, source=groups_named(model%scene_t, NAME))
+      there = size(groups) > 0
+      allocate (self%sides(size(groups)))
+      do i = 1, size(groups)
+         associate (side => self%sides(i))
+            side%scene_item_t = item_of(groups(i))
+            side%what = '&'//NAME
+            side%along_normal = .true.
+            side%bears = .true.
+            side%damps = .true.
+            table%group = groups(i)
+            call take(table, side, boundary, history)
+            side%group = mesh_group(model%domain%mesh, boundary, place_of(side), fault)
+            if (fault%code == 0 .and. history /= '') &
+               side%amplitude = defined_name('history', history, model%amplitudes%name, place_of(side), fault)
+            call check_stages(model%stages%name, side%scene_item_t, side%stages, fault)
+            if (fault%code /= 0) return
+            if (size(model%domain%mesh%groups(side%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
+               place_of(side)//'group '''//trim(boundary)//''' has no edges that waves could leave through.')
+            model%actions = [model%actions, side%action_t]
+         end associate
+      end do
+   end subroutine build
+
+   !> Dashpots of the boundaries. docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: the ground has no stiffness, or
+   !> its material refuses.
+   subroutine begin_run(self, model, solution, fault)
+      class(absorbing_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      type(dashpots_t) :: dashpots
+      integer :: i
+
+      if (.not. allocated(solution%constraint%dashpots)) allocate (solution%constraint%dashpots(0))
+      do i = 1, size(self%sides)
+         if (fault%code /= 0) return
+         call prepare_side(model, self%sides(i), solution%state, dashpots, fault)
+         solution%constraint%dashpots = [solution%constraint%dashpots, dashpots]
+         self%sides(i)%dashpots = size(solution%constraint%dashpots)
+      end do
+   end subroutine begin_run
+
+   subroutine prepare_side(model, side, state, one, fault)
+      type(model_t), intent(in) :: model
+      type(side_t), intent(inout) :: side
+      type(state_t), intent(in) :: state
+      type(dashpots_t), intent(out) :: one
+      type(fault_t), intent(inout) :: fault
+      type(behind_t) :: ground
+      integer, allocatable :: edges(:, :)
+      integer :: e, k, f
+
+      allocate (one%row(0), one%column(0), one%value(0))
+      allocate (side%held(model%dofs%n), source=.false.)
+      allocate (side%incoming(model%dofs%n), source=0.0_wp)
+      edges = facing_edges(model, side%group, acting_stages(model, side%action_t))
+      do e = 1, size(edges, 2)
+         call ground_behind(model, side, edges(:, e), state, ground, fault)
+         if (fault%code /= 0) return
+         call add_edge(model, edges(:, e), ground, one)
+      end do
+      do k = 1, size(one%row)
+         f = model%dofs%field(one%column(k))
+         if (f > DISPLACEMENTS) cycle
+         side%held(one%row(k)) = .true.
+         ! The wave that comes in doubles at a rigid wall: its force is twice its impedance.
+         side%incoming(one%row(k)) = side%incoming(one%row(k)) + 2*one%value(k)*side%velocity(f)
+      end do
+   end subroutine prepare_side
+
+   !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points.
+   subroutine ground_behind(model, side, edge, state, ground, fault)
+      type(model_t), intent(in) :: model
+      type(side_t), intent(in) :: side
+      integer, intent(in) :: edge(3)
+      type(state_t), intent(in) :: state
+      type(behind_t), intent(out) :: ground
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: rho, c_p, c_s, modulus, shear, s, slope
+      type(relative_t) :: rel
+      logical :: with_pores, with_flow
+      integer :: e, i
+
+      ! The triangle on its left: of two that share it the other may be no ground.
+      e = findloc([(any(model%domain%mesh%t6(4:6, i) == edge(3) .and. model%domain%mesh%t6(1:3, i) == edge(1)), &
+                    i=1, size(model%domain%mesh%t6, 2))], .true., dim=1)
+      call look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
+      if (fault%code /= 0) return
+      if (side%rho > 0.0_wp) rho = side%rho
+      associate (region => model%domain%regions(model%domain%region_of(e)))
+         with_pores = region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)
+         with_flow = region%with_w .and. region%drainage == COUPLED
+      end associate
+      if (with_pores) modulus = modulus + pore_stiffness(model, e, state, s, slope)
+      c_p = side%c_p
+      c_s = side%c_s
+      if ((.not. c_p > 0.0_wp .and. .not. modulus > 0.0_wp) .or. (.not. c_s > 0.0_wp .and. .not. shear > 0.0_wp)) then
+         call raise(fault, EXIT_MATERIAL, place_of(side)//'element '//whole(e)//' at the boundary has no '// &
+                    'stiffness in the initial state (shear modulus '//short(shear)//' kPa); give c_p and c_s.')
+         return
+      end if
+      if (.not. c_p > 0.0_wp) c_p = sqrt(modulus/rho)
+      if (.not. c_s > 0.0_wp) c_s = sqrt(shear/rho)
+      ground%normal = rho*c_p
+      ground%shear = rho*c_s
+      if (.not. with_flow) return
+      associate (law => model%domain%permeabilities(model%domain%regions(model%domain%region_of(e))%permeability), &
+                 f => model%domain%fluids)
+         rel = relative_permeability(law, s)
+         ground%water = law%intrinsic*rel%w/(f%eta_w*c_p)
+         if (model%domain%with_c) ground%air = law%intrinsic*rel%a/(f%eta_a*c_p)
+      end associate
+   end subroutine ground_behind
+
+   !> Means over the points of an element: constrained and shear modulus of the skeleton for a small strain [kPa],
+   !> saturation and its slope against suction, density.
+   subroutine look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: e
+      type(state_t), intent(in) :: state
+      real(wp), intent(out) :: modulus, shear, s, slope, rho
+      type(fault_t), intent(inout) :: fault
+      type(response_t) :: response
+      type(report_t) :: report
+      real(wp) :: strain(6, model%domain%rule), suction(model%domain%rule), pressures(2), n
+      real(wp), allocatable :: before(:, :), after(:, :)
+      integer :: g, p, first, last
+
+      associate (m => model%domain, region => model%domain%regions(model%domain%region_of(e)))
+         first = (e - 1)*m%rule + 1
+         last = e*m%rule
+         strain = 0.0_wp
+         do g = 1, m%rule
+            pressures = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
+            suction(g) = pressures(2)
+         end do
+         before = reshape(state%state(m%before_state(e) + 1:m%before_state(e + 1)), [region%law%n_state, m%rule])
+         after = before
+         call region%law%update(m%rule, state%stress(:, first:last), before, strain, suction, &
+                                0*suction, .true., response, after, report)
+         if (report%code /= 0) then
+            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary '// &
+                       'refuses the initial state.')
+            modulus = 0.0_wp
+            shear = 0.0_wp
+            s = 1.0_wp
+            slope = 0.0_wp
+            rho = 0.0_wp
+            return
+         end if
+         modulus = sum(response%dsig_deps(1, 1, :m%rule) + response%dsig_deps(2, 2, :m%rule))/(2*m%rule)
+         shear = sum(response%dsig_deps(4, 4, :m%rule))/m%rule
+         s = sum(state%s(first:last))/m%rule
+         slope = 0.0_wp
+         if (region%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
+         rho = 0.0_wp
+         do p = first, last
+            n = state%e(p)/(1 + state%e(p))
+            rho = rho + mixture_density(m, region, n, state%s(p))/m%rule
+         end do
+      end associate
+   end subroutine look_at_element
+
+   !> What fluids that cannot leave add to the constrained modulus [kPa].
+   real(wp) function pore_stiffness(model, e, state, s, slope) result(stiffness)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: e
+      type(state_t), intent(in) :: state
+      real(wp), intent(in) :: s, slope   !< Saturation, its change with suction [1/kPa].
+      real(wp) :: n, c(2, 2), room, det
+
+      associate (m => model%domain, p => (e - 1)*model%domain%rule + 1, h => model%domain%fluids%henry)
+         n = state%e(p)/(1 + state%e(p))
+         room = 0.0_wp
+         if (m%with_c) room = 1 - (1 - h)*s
+         ! Sum of the balances, and air, against p_w and p_c: docs/theory/host.md sections 2.2 and 2.3.
+         c(2, 1) = n*room/m%fluids%k_a
+         c(1, 1) = n*s/m%fluids%k_w + c(2, 1)
+         c(1, 2) = c(2, 1) + h*n*slope
+         c(2, 2) = c(2, 1) - (1 - h)*n*slope
+         stiffness = 1/c(1, 1)
+         det = c(1, 1)*c(2, 2) - c(1, 2)*c(2, 1)
+         if (m%with_c .and. c(2, 2) > 0.0_wp .and. det > 0.0_wp) &
+            stiffness = ((c(2, 2) - (1 - s)*c(2, 1))*(1 + h*s) + ((1 - s)*c(1, 1) - c(1, 2))*room)/det
+      end associate
+   end function pore_stiffness
+
+   !> Dashpots of an edge: integrals of N_i N_j with the impedances along its normal and tangent.
+   subroutine add_edge(model, edge, ground, one)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: edge(3)
+      type(behind_t), intent(in) :: ground
+      type(dashpots_t), intent(inout) :: one
+      type(edge_point_t) :: points(PER_EDGE)
+      real(wp) :: normal(2), block(2, 2), c(2, 2, 3, 3), h(3, 3)
+      integer :: g, i, j, a, b
+
+      c = 0.0_wp
+      h = 0.0_wp
+      points = points_of_edge(model%domain, edge)
+      do g = 1, PER_EDGE
+         associate (n => points(g)%n, m => points(g)%m, tangent => points(g)%tangent, area => points(g)%area)
+            normal = [tangent(2), -tangent(1)]/norm2(tangent)
+            do b = 1, 2
+               do a = 1, 2
+                  block(a, b) = (ground%normal - ground%shear)*normal(a)*normal(b) + merge(ground%shear, 0.0_wp, a == b)
+               end do
+            end do
+            do j = 1, 3
+               do i = 1, 3
+                  c(:, :, i, j) = c(:, :, i, j) + area*n(i)*n(j)*block
+                  h(i, j) = h(i, j) + area*m(i)*m(j)
+               end do
+            end do
+         end associate
+      end do
+      associate (of => model%dofs%of)
+         do j = 1, 3
+            do i = 1, 3
+               do b = 1, 2
+                  do a = 1, 2
+                     call add(of(a, edge(i)), of(b, edge(j)), c(a, b, i, j))
+                  end do
+               end do
+               call add(of(AT_P_W, edge(i)), of(AT_P_W, edge(j)), (ground%water + ground%air)*h(i, j))
+               call add(of(AT_P_W, edge(i)), of(AT_P_C, edge(j)), ground%air*h(i, j))
+               call add(of(AT_P_C, edge(i)), of(AT_P_W, edge(j)), ground%air*h(i, j))
+               call add(of(AT_P_C, edge(i)), of(AT_P_C, edge(j)), ground%air*h(i, j))
+            end do
+         end do
+      end associate
+   contains
+      subroutine add(row, column, value)
+         integer, intent(in) :: row, column
+         real(wp), intent(in) :: value
+
+         if (row == 0 .or. column == 0 .or. .not. abs(value) > 0.0_wp) return
+         one%row = [one%row, row]
+         one%column = [one%column, column]
+         one%value = [one%value, value]
+      end subroutine add
+   end subroutine add_edge
+
+   !> Sides that no longer act are freed of the forces that they held.
+   subroutine begin_stage(self, model, begins, solution, fault)
+      class(absorbing_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      logical, intent(in) :: begins
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      associate (unused => fault)
+      end associate
+      self%at_start = begins
+      if (.not. begins) return
+      do i = 1, size(self%sides)
+         associate (side => self%sides(i), number => solution%at%stage)
+            if (acts(side, model, number - 1) .and. .not. acts(side, model, number)) &
+               where (side%held) solution%constraint%offset = 0.0_wp
+         end associate
+      end do
+   end subroutine begin_stage
+
+   !> Which sides act, and the forces of the waves that come in. Where a stage begins those that have not acted before
+   !> hold what the ground behind them has held so far.
+   subroutine before_step(self, model, dt, solution, fault)
+      class(absorbing_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: dt
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      if (self%at_start) call hold_ground(self, model, solution, fault)
+      self%at_start = .false.
+      associate (c => solution%constraint, now => solution%state%time)
+         do i = 1, size(self%sides)
+            associate (side => self%sides(i))
+               c%dashpots(side%dashpots)%acts = acts(side, model, solution%at%stage)
+               if (.not. c%dashpots(side%dashpots)%acts) cycle
+               c%load_0 = c%load_0 + factor_at(model, side%amplitude, now)*side%incoming
+               c%load_1 = c%load_1 + factor_at(model, side%amplitude, now + dt)*side%incoming
+            end associate
+         end do
+      end associate
+   end subroutine before_step
+
+   !> Whether a side acts in a stage; before the first one it does not.
+   pure logical function acts(side, model, number)
+      type(side_t), intent(in) :: side
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number   !< Of the stage.
+
+      acts = .false.
+      if (number > 0) acts = any(acting_stages(model, side%action_t) == model%stages(number)%name)
+   end function acts
+
+   !> Sets the forces on sides that act in a stage and did not in the one before. docs/theory/host.md section 7.4. Fault
+   !> EXIT_MATERIAL: a material refuses its own state at rest.
+   subroutine hold_ground(self, model, solution, fault)
+      class(absorbing_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      logical :: begin_to_act(size(self%sides))
+      real(wp), allocatable :: missing(:)
+      integer :: i
+
+      associate (number => solution%at%stage)
+         begin_to_act = [(acts(self%sides(i), model, number) .and. .not. acts(self%sides(i), model, number - 1), &
+                          i=1, size(begin_to_act))]
+         if (.not. any(begin_to_act)) return
+         call copy_state(solution%state, solution%next)
+         solution%next%v = 0.0_wp
+         solution%next%a = 0.0_wp
+         solution%assembly%air = .false.
+         call assemble(model%domain, model%dofs, solution%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), &
+                       solution%state, solution%next, .false., solution%assembly)
+         if (solution%assembly%bad_element > 0) then
+            call raise(fault, EXIT_MATERIAL, 'Stage '//trim(model%stages(number)%name)//': the material of element '// &
+                       whole(solution%assembly%bad_element)//' refuses its own state at rest.')
+            return
+         end if
+      end associate
+      missing = solution%constraint%load_0 - solution%assembly%residual
+      do i = 1, size(begin_to_act)
+         if (begin_to_act(i)) where (self%sides(i)%held) solution%constraint%offset = missing
+      end do
+      call copy_state(solution%state, solution%next)
+   end subroutine hold_ground
+
+   subroutine exchange(self, solution, archive)
+      class(absorbing_t), intent(inout) :: self
+      type(solution_t), intent(inout) :: solution
+      type(archive_t), intent(inout) :: archive
+
+      associate (unused => self)
+      end associate
+      call archive%exchange('offset', solution%constraint%offset, 'kN, m3/s', &
+                            'flow that is subtracted, forces that hold the ground')
+   end subroutine exchange
+end module absorbing

@@ -1,0 +1,243 @@
+! SPDX-License-Identifier: MIT
+!> Parts of the ground that join or leave between stages, the key stages of &region: which elements a stage has, what
+!> those that left held up, and unknowns that no element has. docs/theory/host.md section 14.
+module staging
+   use kinds, only: wp
+   use acting_places, only: nodes_of_ground
+   use carried_slopes, only: slopes_t
+   use degrees_of_freedom, only: dofs_t
+   use element_equations, only: element_t, compute_element, element_size
+   use exit_codes, only: EXIT_MATERIAL
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use generalised_alpha, only: make_scheme, STATIC
+   use key_table, only: key_table_t
+   use model_types, only: model_t, term_t, gravity_at
+   use name_search, only: check_stages
+   use namelists, only: group_t, LENGTH
+   use porous_domain, only: state_t, copy_state
+   use scene_types, only: acts_in, groups_named, item_of, place_of
+   use solution, only: solution_t
+   use texts, only: whole
+   use unknown_fields, only: DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: staging_t
+
+   character(*), parameter :: IN_GROUP = 'region'
+
+   type, extends(term_t) :: staging_t
+      real(wp), allocatable :: held_up(:)   !< (unknowns) Forces at the start of what leaves with this stage [kN].
+      logical, allocatable :: absent(:)     !< (unknowns) No present element has them.
+   contains
+      procedure, nopass :: declare
+      procedure :: build, begin_stage, before_step, prescribe
+   end type staging_t
+contains
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+      character(LENGTH), allocatable :: stages(:)
+
+      if (k%group%name == IN_GROUP) call take(k, stages)
+   end subroutine declare
+
+   subroutine take(k, stages)
+      type(key_table_t), intent(inout) :: k
+      character(LENGTH), allocatable, intent(out) :: stages(:)
+
+      call k%texts('stages', stages, 'stages in which it is part of the ground; default: all')
+   end subroutine take
+
+   !> Which elements the stages have. Fault EXIT_GROUP: a stage that nobody defines; EXIT_INPUT: ground that is not
+   !> there from the start with a stress of its own, or the flow of a start that lacks it; a stage without ground.
+   subroutine build(self, model, there, fault)
+      class(staging_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t) :: table
+      character(LENGTH), allocatable :: stages(:)
+      logical :: has(size(model%regions), size(model%stages))
+      integer :: i, s
+
+      associate (unused => self)
+      end associate
+      there = .false.
+      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      do i = 1, size(groups)
+         table%group = groups(i)
+         call take(table, stages)
+         call check_stages(model%stages%name, item_of(groups(i)), stages, fault)
+         if (fault%code /= 0) return
+         there = there .or. size(stages) > 0
+         has(i, :) = [(acts_in(stages, model%stages(s)%name), s=1, size(has, 2))]
+      end do
+      if (.not. there) return
+      if (model%subtract_flow) then
+         call raise(fault, EXIT_INPUT, trim(model%file)//': initial_flow = ''subtract'' of &scene keeps the flow '// &
+                    'of the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
+         return
+      end if
+      model%ground = has(model%domain%region_of, :)
+      do s = 1, size(model%stages)
+         if (.not. any(nodes_of_ground(model, s)) .and. fault%code == 0) call raise(fault, EXIT_INPUT, &
+            trim(model%file)//': no &region is part of the ground in stage '''//trim(model%stages(s)%name)//'''.')
+      end do
+      if (fault%code == 0) call check_start(model, fault)
+   end subroutine build
+
+   !> New ground comes without stress.
+   subroutine check_start(model, fault)
+      type(model_t), intent(in) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k
+
+      do i = 1, size(model%initials)
+         associate (initial => model%initials(i))
+            if (.not. (initial%geostatic .or. initial%uniform)) cycle
+            do k = 1, size(model%domain%region_of)
+               if (model%ground(k, 1)) cycle
+               if (.not. any(model%domain%mesh%groups(initial%group)%elements == k)) cycle
+               call raise(fault, EXIT_INPUT, place_of(initial)//'this stress covers the &region with group '''// &
+                          trim(model%regions(model%domain%region_of(k))%group_name)//''', which joins in a later '// &
+                          'stage and comes without stress; name the group of the ground that is there from the start.')
+               return
+            end do
+         end associate
+      end do
+   end subroutine check_start
+
+   !> The elements of a stage, which join with it and which leave, and the forces that those held up; where a run is
+   !> taken up within the stage, from the unknowns at its start. docs/theory/host.md section 14. Fault EXIT_MATERIAL:
+   !> the material of an element that leaves refuses its own state at rest.
+   subroutine begin_stage(self, model, begins, solution, fault)
+      class(staging_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      logical, intent(in) :: begins
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      integer :: i, f
+
+      associate (state => solution%state, before => model%ground(:, max(1, solution%at%stage - 1)))
+         state%present = model%ground(:, solution%at%stage)
+         state%joins = state%present .and. .not. before
+         call find_held_up(self, model, state%present .or. .not. before, solution, fault)
+         if (fault%code /= 0) return
+         call mark_absent(model%dofs, state%present, self%absent)
+         do i = 1, merge(model%dofs%n, 0, begins)
+            if (.not. self%absent(i)) cycle
+            f = model%dofs%field(i)
+            state%v(f, model%dofs%node(i)) = 0.0_wp
+            if (f <= DISPLACEMENTS) state%a(f, model%dofs%node(i)) = 0.0_wp
+         end do
+         state%growth = growth_at(model, solution, state%time)
+         call copy_state(state, solution%next)
+      end associate
+   end subroutine begin_stage
+
+   !> What the elements that leave hold up on the nodes around them: their internal forces and weight where the stage
+   !> begins. Their points stand still, so that a run that is taken up finds the same.
+   subroutine find_held_up(self, model, stays, solution, fault)
+      class(staging_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      logical, intent(in) :: stays(:)      !< (elements) Or has not been there.
+      type(solution_t), intent(in) :: solution
+      type(fault_t), intent(inout) :: fault
+      type(state_t) :: at_start, same
+      type(slopes_t) :: slopes
+      type(element_t) :: out
+      integer :: e, i, at
+
+      self%held_up = [(0.0_wp, i=1, model%dofs%n)]
+      if (all(stays)) return
+      at_start = solution%state
+      at_start%x = solution%at%x_start
+      at_start%v = 0.0_wp
+      at_start%a = 0.0_wp
+      at_start%joins = .false.
+      at_start%gravity = gravity_at(model, solution%at%t_start)
+      same = at_start
+      ! Laws that change with time are those of the start of the stage.
+      if (allocated(solution%next%laws)) same%laws = solution%next%laws
+      do e = 1, size(stays)
+         if (stays(e)) cycle
+         call compute_element(model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., slopes, &
+                              out)
+         if (out%bad_point > 0) then
+            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//', which leaves, refuses its '// &
+                       'own state at rest.')
+            return
+         end if
+         do i = 1, element_size(model%domain, e)
+            at = model%dofs%element(i, e)
+            if (at == 0) cycle
+            if (model%dofs%field(at) <= DISPLACEMENTS) self%held_up(at) = self%held_up(at) + out%r(i)
+         end do
+      end do
+   end subroutine find_held_up
+
+   !> Unknowns that elements have, but none that is present.
+   pure subroutine mark_absent(dofs, present, absent)
+      type(dofs_t), intent(in) :: dofs
+      logical, intent(in) :: present(:)   !< (elements)
+      logical, allocatable, intent(out) :: absent(:)
+      integer :: e, i, pass
+
+      allocate (absent(dofs%n), source=.false.)
+      do pass = 1, 2
+         do e = 1, size(present)
+            if (present(e) .neqv. pass == 2) cycle
+            do i = 1, size(dofs%element, 1)
+               if (dofs%element(i, e) > 0) absent(dofs%element(i, e)) = pass == 1
+            end do
+         end do
+      end do
+   end subroutine mark_absent
+
+   !> Share of the stage that is over: of the weight of what joins. [-]
+   pure real(wp) function growth_at(model, solution, time) result(share)
+      type(model_t), intent(in) :: model
+      type(solution_t), intent(in) :: solution
+      real(wp), intent(in) :: time   !< [s]
+
+      share = solution%at%share_of(model%stages(solution%at%stage)%duration, time)
+   end function growth_at
+
+   !> What is left of the forces that hold up fades over the stage, and the weight of what joins grows.
+   subroutine before_step(self, model, dt, solution, fault)
+      class(staging_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: dt
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => fault)
+      end associate
+      associate (c => solution%constraint, now => solution%state%time)
+         c%load_0 = c%load_0 - (1 - growth_at(model, solution, now))*self%held_up
+         c%load_1 = c%load_1 - (1 - growth_at(model, solution, now + dt))*self%held_up
+         solution%next%growth = growth_at(model, solution, now + dt)
+      end associate
+   end subroutine before_step
+
+   !> Unknowns that no present element has stay as they are.
+   subroutine prescribe(self, model, time, solution)
+      class(staging_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time
+      type(solution_t), intent(inout) :: solution
+      integer :: i
+
+      associate (unused => time)
+      end associate
+      associate (c => solution%constraint, dofs => model%dofs)
+         do i = 1, dofs%n
+            if (.not. self%absent(i)) cycle
+            c%fixed(i) = .true.
+            c%limited(i) = .false.
+            c%target(i) = solution%state%x(dofs%field(i), dofs%node(i))
+            if (dofs%field(i) > DISPLACEMENTS) c%air(dofs%node(i)) = .false.
+         end do
+      end associate
+   end subroutine prescribe
+end module staging

@@ -1,0 +1,216 @@
+! SPDX-License-Identifier: MIT
+!> Strength in time: parameters of materials that follow histories, &strength. docs/theory/host.md section 15.
+module strength
+   use kinds, only: wp
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use key_schema, only: REQUIRED
+   use key_table, only: key_table_t
+   use material_point, only: material_t
+   use model_types, only: model_t, term_t, factor_at
+   use name_search, only: defined_name
+   use namelists, only: group_t, LENGTH
+   use porous_domain, only: state_t
+   use scene_types, only: scene_item_t, item_of, place_of, groups_named
+   use solution, only: solution_t
+   use texts, only: short
+   implicit none (type, external)
+   private
+   public :: strength_t
+
+   real(wp), parameter :: START = 0.0_wp       !< Of a run [s].
+   real(wp), parameter :: SAME = 1.0e-12_wp    !< Relative difference that is none.
+   integer, parameter :: SENTENCE = 600
+   character(*), parameter :: NAME = 'strength'
+
+   !> A parameter of a material that follows a history.
+   type, extends(scene_item_t) :: change_t
+      character(LENGTH) :: material_name = '', parameter_name = '', amplitude_name = ''
+      integer :: place = 0, amplitude = 0            !< In the law, in the histories.
+   end type change_t
+
+   type, extends(term_t) :: strength_t
+      type(change_t), allocatable :: changes(:)
+   contains
+      procedure, nopass :: declare
+      procedure :: group, build, begin_stage, before_step, remark
+   end type strength_t
+contains
+   function group(self) result(name_of_group)
+      class(strength_t), intent(in) :: self
+      character(:), allocatable :: name_of_group
+
+      associate (unused => self)
+      end associate
+      name_of_group = NAME
+   end function group
+
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+      type(change_t) :: nothing
+
+      if (k%group%name == NAME) call take(k, nothing)
+   end subroutine declare
+
+   subroutine take(k, change)
+      type(key_table_t), intent(inout) :: k
+      type(change_t), intent(inout) :: change
+
+      call k%text('material', change%material_name, 'name of the material whose strength changes with time', REQUIRED)
+      call k%text('parameter', change%parameter_name, &
+                  'what changes: M_c of a &mud; of a &umat props(1), props(2), ...', REQUIRED)
+      call k%text('history', change%amplitude_name, 'factor on the parameter, 1 at the start', REQUIRED, &
+                  refers='history')
+   end subroutine take
+
+   !> Places of what the groups &strength name, and whether the laws allow what their histories ask. Fault EXIT_GROUP: a
+   !> material or history that is not defined; EXIT_INPUT: a parameter that cannot change, two histories of one, a
+   !> factor that is not 1 at the start, a value that the law refuses.
+   subroutine build(self, model, there, fault)
+      class(strength_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t) :: table
+      integer :: i, k
+
+      allocate (groups, source=groups_named(model%scene_t, NAME))
+      there = size(groups) > 0
+      allocate (self%changes(size(groups)))
+      do i = 1, size(groups)
+         associate (s => self%changes(i))
+            s%scene_item_t = item_of(groups(i))
+            table%group = groups(i)
+            call take(table, s)
+            s%amplitude = defined_name('history', s%amplitude_name, model%amplitudes%name, place_of(s), fault)
+            if (fault%code == 0) k = defined_name('material', s%material_name, model%materials%name, place_of(s), fault)
+            if (fault%code /= 0) return
+            call check_history(model, self%changes, i, fault)
+            do k = 1, size(model%regions)
+               if (fault%code /= 0) return
+               if (model%regions(k)%material_name == s%material_name) &
+                  call check_law(model, s, model%domain%regions(k)%law, fault)
+            end do
+         end associate
+      end do
+   end subroutine build
+
+   !> A parameter follows one history, and the ground begins with the parameter as its material has it.
+   subroutine check_history(model, changes, number, fault)
+      type(model_t), intent(in) :: model
+      type(change_t), intent(in) :: changes(:)
+      integer, intent(in) :: number   !< Of the group.
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: first
+
+      associate (s => changes(number), before => changes(:number - 1))
+         first = factor_at(model, s%amplitude, START)
+         if (any(before%material_name == s%material_name .and. before%parameter_name == s%parameter_name)) then
+            call raise(fault, EXIT_INPUT, place_of(s)//trim(s%parameter_name)//' of '''//trim(s%material_name)// &
+                       ''' follows a history already; one &strength names it once.')
+         else if (abs(first - 1) > SAME) then
+            call raise(fault, EXIT_INPUT, place_of(s)//'history '''//trim(s%amplitude_name)//''' is '//short(first)// &
+                       ' at the start of the run; it must be 1 there: the ground begins with the parameter of its '// &
+                       'material.')
+         end if
+      end associate
+   end subroutine check_history
+
+   !> Whether a law has the parameter, and takes the smallest and the largest value of its history.
+   subroutine check_law(model, s, law, fault)
+      type(model_t), intent(in) :: model
+      type(change_t), intent(inout) :: s   !< Gets the place of the parameter in the law.
+      class(material_t), intent(in) :: law
+      type(fault_t), intent(inout) :: fault
+      class(material_t), allocatable :: changed
+      character(SENTENCE) :: text
+      real(wp) :: factors(2)
+      integer :: i
+
+      call law%find_varying(trim(s%parameter_name), s%place, text)
+      if (s%place == 0) then
+         call raise(fault, EXIT_INPUT, place_of(s)//'parameter = '''//trim(s%parameter_name)//''' of material '''// &
+                    trim(s%material_name)//''' cannot follow a history: '//trim(text)//'.')
+         return
+      end if
+      factors = [minval(model%amplitudes(s%amplitude)%values), maxval(model%amplitudes(s%amplitude)%values)]
+      do i = 1, size(factors)
+         allocate (changed, source=law)
+         call changed%change_over_step([s%place], [1.0_wp], factors(i:i), text)
+         if (text /= '' .and. fault%code == 0) call raise(fault, EXIT_INPUT, place_of(s)//'with the factor '// &
+            short(factors(i))//' of history '''//trim(s%amplitude_name)//''': '//trim(text))
+         deallocate (changed)
+      end do
+   end subroutine check_law
+
+   !> The laws of a stage at its start.
+   subroutine begin_stage(self, model, begins, solution, fault)
+      class(strength_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      logical, intent(in) :: begins
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      logical :: changes
+
+      associate (u1 => begins, u2 => fault)
+      end associate
+      call change_laws(self%changes, model, solution%at%t_start, solution%at%t_start, solution%next, changes)
+   end subroutine begin_stage
+
+   !> The laws of a step. Slopes that were carried along know nothing of a strength that changes.
+   subroutine before_step(self, model, dt, solution, fault)
+      class(strength_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: dt
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      logical :: changes
+
+      associate (unused => fault)
+      end associate
+      call change_laws(self%changes, model, solution%state%time, solution%state%time + dt, solution%next, changes)
+      if (changes) solution%assembly%slopes%known = .false.
+   end subroutine before_step
+
+   !> How much of a strength is left: a body without equilibrium has no other step.
+   function remark(self, model, time) result(text)
+      class(strength_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time
+      character(:), allocatable :: text
+      integer :: i
+
+      text = ''
+      do i = 1, size(self%changes)
+         associate (s => self%changes(i))
+            text = text//'. By &strength '//trim(s%parameter_name)//' of '''//trim(s%material_name)//''' is at '// &
+                   short(factor_at(model, s%amplitude, time))//' of its value: it may have failed'
+         end associate
+      end do
+   end function remark
+
+   !> The laws of a step, which ends with the state `next`.
+   subroutine change_laws(list, model, from, until, next, changes)
+      type(change_t), intent(in) :: list(:)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: from, until     !< Start and end of the step [s].
+      type(state_t), intent(inout) :: next
+      logical, intent(out) :: changes         !< Whether a factor differs at its end.
+      real(wp), dimension(size(list)) :: before, after
+      logical :: own(size(list))
+      character(SENTENCE) :: text
+      integer :: i
+
+      before = [(factor_at(model, list(i)%amplitude, from), i=1, size(before))]
+      after = [(factor_at(model, list(i)%amplitude, until), i=1, size(after))]
+      changes = any(abs(after - before) > 0.0_wp)
+      if (allocated(next%laws)) deallocate (next%laws)
+      allocate (next%laws(size(model%domain%regions)))
+      do i = 1, size(next%laws)
+         allocate (next%laws(i)%law, source=model%domain%regions(i)%law)
+         own = list%material_name == model%regions(i)%material_name
+         ! What the law refuses was refused before the run.
+         call next%laws(i)%law%change_over_step(pack(list%place, own), pack(before, own), pack(after, own), text)
+      end do
+   end subroutine change_laws
+end module strength
