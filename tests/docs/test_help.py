@@ -49,6 +49,7 @@ def test_every_executable_script_of_the_tree_is_tried_here():
         for name in PYTHON:
             helps(name, sys.executable, root / name)
         helps("mud_study", sys.executable, "-m", "mud.study")
+        helps("mud_lwd", sys.executable, "-m", "mud.lwd")
         helps("mud_calibrate", sys.executable, "-m", "mud.calibration.command")
         for name in SHELL:
             helps(name, root / name)

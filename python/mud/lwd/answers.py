@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""What a run of a test says: deflection, modulus, rebound and settlement of every drop, depth of influence."""
+
+from __future__ import annotations
+
+import math
+import pathlib
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..host import HostRun
+from ..study.histories import between
+from .device import G
+from .ground import Test, point_of
+
+INFLUENCE = 0.1  # share of the plate's deflection that the ground still moves at the depth of influence [-]
+
+
+@dataclass
+class Drop:
+    """A drop, from the moment at which it begins. Lengths in m, times in s, downwards positive."""
+
+    name: str
+    measured: bool  # not a seating drop
+    deflection: float  # largest
+    at: float  # when
+    velocity: float  # largest
+    settlement: float  # left at its end
+    modulus: float  # by the formula of the device [kPa]
+
+    @property
+    def rebound(self) -> float:
+        return self.deflection - self.settlement
+
+
+@dataclass
+class Answers:
+    """Of one run."""
+
+    drops: list[Drop]
+    influence: float  # depth at which the ground moves by a tenth of the plate's deflection, last drop [m]
+    tension: float  # largest pull between plate and ground, which a plate that lies loose would not have [kPa]
+    saturation: float  # of the ground below the plate, before the drops [-]; nan: no water
+    void_ratio: float  # there
+    suction: float  # there [kPa]
+    history: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  # columns of histories.csv
+
+    @property
+    def deflection(self) -> float:
+        """Mean of the measured drops [m]."""
+        return float(np.mean([d.deflection for d in self.drops if d.measured]))
+
+    @property
+    def modulus(self) -> float:
+        """Of the mean deflection of the measured drops [kPa]."""
+        first = next(d for d in self.drops if d.measured)
+        return first.modulus * first.deflection / self.deflection
+
+    @property
+    def velocity(self) -> float:
+        """Mean of the largest velocities of the measured drops [m/s]."""
+        return float(np.mean([d.velocity for d in self.drops if d.measured]))
+
+    def numbers(self) -> dict[str, float]:
+        """Every answer that has an error, by its name."""
+        told = {"modulus": self.modulus, "deflection": self.deflection, "influence": self.influence}
+        for drop in self.drops:
+            for name in ("deflection", "modulus", "rebound", "settlement"):
+                told[f"{drop.name}.{name}"] = getattr(drop, name)
+        return told
+
+
+def answers_of(test: Test, folder: str | pathlib.Path) -> Answers:
+    """Answers of the output folder of a run of mud_host."""
+    run = HostRun(folder)
+    plate, points, device = run.table("contact"), run.histories, test.device
+    time, moved, speed = plate["time"], -plate["plate.u_z"], -plate["plate.v_z"]
+    drops = []
+    for i, (name, start) in enumerate(zip(test.drops, test.starts)):
+        within = _within(time, start, start + test.interval)
+        t, s = time[within] - start, moved[within]
+        before, _ = s[0], s[-1]
+        peak, at = _peak(t, s - before)
+        drops.append(
+            Drop(
+                name,
+                i >= test.seating,
+                peak,
+                at,
+                float(speed[within].max()),
+                float(s[-1] - before),
+                device.modulus(peak),
+            )
+        )
+    start = test.starts[-1]
+    within = _within(points["time"], start, start + test.interval)
+    deepest = [0.0, *test.depths]
+    shares = [1.0]
+    for depth in test.depths:
+        u = -points[f"{point_of(depth)}.u_z"][within]
+        shares.append(float((u - u[0]).max()) / drops[-1].deflection)
+    # What the ground gives back to the plate: its inertia, weight and the force of the drop.
+    since = np.full_like(time, -1.0)
+    for begin in test.starts:
+        since = np.where(time >= begin, time - begin, since)
+    force = device.force(since)
+    reaction = device.mass * (plate["plate.a_z"] + G) + force
+    seen = time >= test.starts[0]
+    area = math.pi * device.radius**2
+    first = point_of(test.depths[0])
+    row = int(np.argmax(points["time"] >= test.starts[0] - 1e-9))
+    history = {
+        "time": points["time"],
+        "force": np.interp(points["time"], time, force),
+        "deflection": np.interp(points["time"], time, moved),
+    }
+    if test.wet:
+        for depth in test.depths[:4]:
+            for p in ("p_w", "p_c"):
+                history[f"{p}_{point_of(depth)}"] = points[f"{point_of(depth)}.{p}"]
+    return Answers(
+        drops,
+        _depth_of(deepest, shares),
+        float(max(0.0, -reaction[seen].min() / area)),
+        float(points[f"{first}.S_w"][row]) if test.wet else math.nan,
+        float(points[f"{first}.e"][row]),
+        float(points[f"{first}.p_c"][row]) if test.wet else math.nan,
+        history,
+    )
+
+
+def _within(time, start, end):
+    """Rows of a drop; of two at its start, where a stage ends, the first."""
+    close = 1e-9 * max(1.0, abs(end))
+    return (time >= start - close) & (time <= end + close)
+
+
+def _peak(time, moved):
+    """The largest of a history, between its steps, and when."""
+    last = np.r_[time[1:] > time[:-1], True]
+    time, moved = time[last], moved[last]
+    top = int(moved.argmax())
+    fine = np.linspace(time[max(top - 1, 0)], time[min(top + 1, len(time) - 1)], 201)
+    # A parabola through the three rows about it: monotone cubics have their largest value at a row.
+    if 0 < top < len(time) - 1:
+        values = np.polyval(
+            np.polyfit(time[top - 1 : top + 2] - time[top], moved[top - 1 : top + 2], 2), fine - time[top]
+        )
+    else:
+        values = between(time, moved, fine)
+    best = int(values.argmax())
+    return float(values[best]), float(fine[best])
+
+
+def _depth_of(depths, shares):
+    """Depth at which a share that falls with depth is INFLUENCE [m]; nan if it does not fall so far."""
+    for (d0, s0), (d1, s1) in zip(zip(depths, shares), zip(depths[1:], shares[1:])):
+        if s1 <= INFLUENCE < s0:
+            return d0 + (d1 - d0) * (math.log(s0) - math.log(INFLUENCE)) / (math.log(s0) - math.log(max(s1, 1e-12)))
+    return math.nan

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""mud_lwd: formulas of the devices, scenes that the host takes without a word, drops whose answers are known, a page
+with errors, records, charts, ends and resumption."""
+
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+from checking import build, check, needs_plain_library, needs_release, root, work
+
+needs_plain_library()
+needs_release("tests of the deflectometer are Python over many runs of mud_host, the same in every build")
+ENVIRONMENT = {
+    **os.environ,
+    "PYTHONPATH": str(root / "python"),
+    "MUD_LIBRARY_DIR": str(build),
+    "OMP_NUM_THREADS": "1",
+    "MUD_HOST": str(build / "host/mud_host"),
+    "MPLBACKEND": "Agg",
+}
+sys.path.insert(0, str(root / "python"))
+os.environ["MUD_LIBRARY_DIR"] = str(build)
+import tables  # noqa: E402 (checking knows its folder)
+from mud.errors import InputError  # noqa: E402
+from mud.lwd.device import device_of, record_of  # noqa: E402
+from mud.lwd.ground import Layer, Test, scene_of  # noqa: E402
+
+SMALL = ("--width", "0.9", "--depth", "0.9", "--drops", "1", "1")
+ELASTIC = ("--material", "elastic:30000:0.3", "--void-ratio", "0.6")
+SAND = ("--material", "toyoura", "--drops", "0", "1", "--width", "0.9", "--depth", "0.9", "--step-tolerance", "0.03")
+
+
+def lwd(*words, **more):
+    return subprocess.run(
+        [sys.executable, "-m", "mud.lwd", *map(str, words)],
+        capture_output=True,
+        text=True,
+        env=ENVIRONMENT,
+        cwd=work,
+        **more,
+    )
+
+
+def rows(path):
+    return tables.rows(work / path)
+
+
+def raised(what):
+    try:
+        what()
+    except InputError as problem:
+        return str(problem)
+    return ""
+
+
+def test_the_formulas_are_those_of_the_standards():
+    # E_vd = 22.5/s, MN/m2 and mm; f (1 - nu^2) sigma r/s of a load cell: pi/2 (1 - 0.35^2) 100 kPa 0.15 m/1 mm.
+    check("Zorn", abs(device_of("zorn").modulus(0.5e-3) / 1e3 - 45.0) < 1e-9, device_of("zorn").modulus(0.5e-3))
+    prima = math.pi / 2 * (1 - 0.35**2) * 100 * 0.15 / 1e-3
+    check("Prima", abs(device_of("prima").modulus(1e-3) / prima - 1) < 1e-9, device_of("prima").modulus(1e-3))
+    own = device_of("prima", peak=10.0, radius=0.1, poisson=0.5, shape=2.0)
+    check("own values", abs(own.modulus(1e-3) - 1.5 * 10 / (math.pi * 0.01) * 0.1 / 1e-3) < 1e-6, own.modulus(1e-3))
+    f = device_of("zorn").force(np.array([-1e-3, 0, 0.0085, 0.017, 0.02]))
+    check("half sine of 7.07 kN", np.allclose(f, [0, 0, 7.0686, 0, 0], atol=1e-4), f)
+
+
+def test_scenes_are_taken_by_the_host_without_a_warning():
+    sand, device = Layer("karlsruhe", 0.75), device_of("zorn")
+    for name, test in {
+        "suction": Test(device, (sand,), suction=25),
+        "table": Test(device, (sand,), water_table=1.0),
+        "rain": Test(device, (sand,), water_table=1.0, rain=10, rain_hours=2),
+        "layers": Test(device, (Layer("elastic:2e5:0.35", 0.3, 0.2), Layer("toyoura", 0.8, 0.3), sand), suction=20),
+        "dry": Test(device, (Layer("elastic:3e4"),)),
+        "held": Test(device, (sand,), suction=25, fixed=True),
+    }.items():
+        path = work / f"{name}.nml"
+        path.write_text(scene_of(test))
+        done = subprocess.run(
+            [build / "host/mud_host", path, "--check"], capture_output=True, text=True, env=ENVIRONMENT
+        )
+        warned = [w for w in done.stderr.splitlines() if "begins outside what it was fitted to" not in w]
+        check(f"{name} is taken", done.returncode == 0 and not warned, done.stderr)
+
+
+def test_elastic_ground_gives_the_same_deflection_every_time_and_takes_it_back():
+    done = lwd("test", *ELASTIC, *SMALL, "--output", "elastic", "--fineness", "1")
+    check("it runs", done.returncode == 0, done.stderr)
+    drops = rows("elastic/drops.csv")
+    check("two drops", [d["kind"] for d in drops] == ["seating", "measured"], drops)
+    first, last = (float(d["deflection_mm"]) for d in drops)
+    errors = sum(float(d["error_mm"]) for d in drops)
+    check("the same deflection", abs(first - last) < errors + 0.01 * last, (first, last, errors))
+    # Waves that the base throws back still move the plate a little.
+    check("the deflection is taken back", abs(float(drops[1]["settlement_mm"])) < 0.15 * last, drops[1])
+    # A rigid plate on a half space: pi/2 (1 - nu^2) sigma r/E = 0.715 mm; on 0.9 m above a rigid base less, by inertia
+    # more.
+    check("the size of the closed form", 0.5 < last < 0.8, last)
+    check("22.5/s", abs(float(drops[1]["modulus_MPa"]) * last / 22.5 - 1) < 1e-3, drops[1])
+    page = (work / "elastic/report.html").read_text()
+    for words in ("data:image/png;base64,", "22.5/s", "Warnings", "1 (seating)", "2 (measured)", "no water"):
+        check(f"the page has {words!r}", words in page)
+    check("a picture", (work / "elastic/lwd.png").stat().st_size > 20000)
+    table = {r["answer"]: r for r in rows("elastic/results.csv")}
+    check(
+        "the modulus has an error", 0 < float(table["modulus"]["error"]) < 0.3 * float(table["modulus"]["value"]), table
+    )
+    check("the last line has both", "+-" in done.stdout.splitlines()[-1], done.stdout)
+    history = rows("elastic/histories.csv")
+    force = max(float(r["force_kN"]) for r in history)
+    check("the peak of the force is in the histories", abs(force - 7.0686) < 0.05, force)
+
+
+def test_a_record_of_the_force_replaces_the_half_sine():
+    t = np.linspace(0, 17, 200)
+    lines = [f"{x:.4f},{7.0686 * math.sin(math.pi * x / 17):.5f},{0.6 * math.sin(math.pi * x / 25):.5f}" for x in t]
+    (work / "record.csv").write_text("time,force,deflection\n" + "\n".join(lines) + "\n")
+    done = lwd("test", *ELASTIC, *SMALL, "--force", "record.csv", "--measured", "record.csv", "--output", "recorded")
+    check("it runs", done.returncode == 0, done.stderr)
+    check(
+        "the record is laid beside it",
+        "force: record 7.06" in done.stdout and "deflection: record 0.6 mm" in done.stdout,
+        done.stdout,
+    )
+    lwd("test", *ELASTIC, *SMALL, "--output", "elastic")
+    pair = [float(rows(f"{name}/drops.csv")[-1]["deflection_mm"]) for name in ("recorded", "elastic")]
+    check("the same half sine, as a record", abs(pair[0] / pair[1] - 1) < 0.01, pair)
+    for text, words in (
+        ("t,f\n1,2\n", "the first line of a record is time,force,deflection"),
+        ("time,force\n0,0\n1,x\n2,0\n", "every line has 2 numbers"),
+        ("time,force\n0,0\n1,1\n1,0\n", "times that ascend"),
+    ):
+        (work / "wrong.csv").write_text(text)
+        said = raised(lambda: record_of(work / "wrong.csv"))
+        check(f"{text!r} is refused", words in said, said)
+    (work / "wrong.csv").write_text("time,force\n0,0\n1,1\n2,0.7\n")
+    check(
+        "a force that does not end",
+        "begins and ends below 5 %" in raised(lambda: device_of("zorn", work / "wrong.csv")),
+    )
+
+
+def test_what_cannot_be_computed_is_refused_in_a_sentence():
+    for words, said in (
+        (("--material", "toyoura", "--void-ratio", "0.8"), "give the suction [kPa] or the depth of the water table"),
+        (("--material", "nosand", "--void-ratio", "0.8", "--suction", "9"), "there is no material nosand"),
+        (("--material", "elastic:x", "--void-ratio", "0.8"), "an elastic layer is elastic:YOUNG"),
+        ((*ELASTIC, "--interval", "20"), "at least one and a half times as long"),
+        ((*ELASTIC, "--width", "0.5"), "at least six radii"),
+        ((*ELASTIC, "--layer", "3", "elastic:1e5", "0.3"), "the layers reach below the base"),
+        ((*ELASTIC, "--layer", "a", "elastic:1e5", "0.3"), "thickness and void ratio are numbers"),
+        ((*ELASTIC, "--peak", "-1"), "peak of the device is -1; it is above 0"),
+        ((*ELASTIC, "--poisson", "0.6"), "it lies from 0 to 0.5"),
+        ((*ELASTIC, "--rain", "5"), "rain needs its duration"),
+        ((*ELASTIC, "--rain", "5", "--rain-hours", "1"), "rain falls on soil: the upper layer is elastic"),
+    ):
+        done = lwd("test", *words, "--output", "refused")
+        check(f"{words} is refused", done.returncode == 2 and said in done.stderr, done.stderr)
+    # A run that ends on its own: the host's sentence.
+    done = lwd("test", *SAND, "--void-ratio", "5", "--suction", "20", "--output", "fails")
+    check("a run that fails", done.returncode == 3 and "the run with fineness 0.5" in done.stderr, done.stderr)
+
+
+def test_a_finished_test_is_found_and_an_interrupted_one_goes_on():
+    words = ("test", *ELASTIC, *SMALL, "--output", "again")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "mud.lwd", *words],
+        env=ENVIRONMENT,
+        cwd=work,
+        stderr=subprocess.PIPE,
+        text=True,
+        stdout=subprocess.DEVNULL,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    until = time.monotonic() + 120
+    while not list(pathlib.Path(work / "again").glob("runs/*/run.json")) and time.monotonic() < until:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate()[1]
+    check("interrupted", process.returncode == 130 and "the same command goes on" in said, (process.returncode, said))
+    done = lwd(*words)
+    check("what was finished is found", done.returncode == 0 and "found: fineness 0.5" in done.stdout, done.stdout)
+    check("the rest is run, with the time that is left", "s left" in done.stdout, done.stdout)
+    done = lwd(*words)
+    check("nothing is run twice", done.stdout.count("found: ") == 4 and "run 1" not in done.stdout, done.stdout)
+
+
+def test_a_chart_shows_that_suction_stiffens_the_ground():
+    words = ("chart", *SAND, "--void-ratios", "0.8", "--suctions", "15", "60", "--output", "chart")
+    done = lwd(*words)
+    check("it runs", done.returncode == 0 and "2 of 2 tests" in done.stdout, (done.stdout, done.stderr))
+    table = rows("chart/chart.csv")
+    moduli, errors = ([float(r[k]) for r in table] for k in ("modulus_MPa", "error_MPa"))
+    check("the modulus grows with suction", moduli[1] > moduli[0] + sum(errors), (moduli, errors))
+    check("the saturation falls", float(table[0]["S_w"]) > float(table[1]["S_w"]) > 0, table)
+    check("a picture", (work / "chart/chart.png").stat().st_size > 10000)
+    before = time.monotonic()
+    again = lwd(*words)
+    check("finished tests are found", again.returncode == 0 and time.monotonic() - before < 60, again.stderr)
+    # One of the grid that fails is told, and the others stay.
+    done = lwd("chart", *SAND, "--void-ratios", "0.8", "5", "--suctions", "60", "--output", "chart")
+    check(
+        "a failure is told",
+        done.returncode == 3 and "1 of 2 tests" in done.stdout and "e = 5, 60 kPa" in done.stderr,
+        (done.stdout, done.stderr),
+    )
