@@ -238,7 +238,8 @@ def test_a_difference_that_turns_is_small_by_chance():
     # Finer meshes cross the limit 1.02 and come back: 4 and 2 times the cells agree, and both are wrong.
     turning = "{0.25: 0.7, 0.5: 0.9, 1: 1.0, 2: 1.05, 4: 1.046}.get(F, 1.02 + 0.02 / F**2)"
     done, errors, _ = fake("turning", turning, code=0)
-    check("not met where they agree", "fineness 4, step" in done.stdout and "; fineness 4" not in done.stdout, done.stdout)
+    check("not met where they agree", "fineness 4, step" in done.stdout and "; fineness 4" not in done.stdout,
+          done.stdout)
     # Differences that turn each time are those of a series that alternates, and leave less than the last.
     done, errors, _ = fake("alternates", "1 + 0.2 * (-0.25) ** math.log2(F / 0.25)", code=0)
     F = float(re.search(r"fineness (\S+), step tolerance", done.stdout.splitlines()[-1]).group(1))
