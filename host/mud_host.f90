@@ -1,24 +1,22 @@
 ! SPDX-License-Identifier: MIT
 !> mud_host SCENE.nml: coupled finite elements of unsaturated soil.
 program mud_host
-   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit, int64
+   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
    use arguments, only: option_t, read_command_line, option_given, option_value, option_values, WORD_LENGTH
    use checkpoints, only: read_checkpoint
-   use contact_alarm, only: warn_of_overlap
+   use contact_alarm, only: contact_alarm_t
    use contact_setup, only: contacts_act
    use initial_conditions, only: balance_t
    use wall_clock, only: clock
    use warnings, only: print_warning, WARNING_LENGTH
-   use generalised_alpha, only: STATIC, DYNAMIC
    use model_builder, only: build_model
    use model_types, only: model_t
-   use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
-   use output_tables, only: check_tables
    use process_settings, only: apply_process_settings
-   use run_output, only: run_output_t
+   use run_observer, only: observers_t
+   use run_output, only: list_observers
    use run_setup, only: prepare_run
-   use run_size, only: size_of_run
    use run_state, only: run_t
+   use run_summary, only: announce
    use start_balance, only: find_imbalance
    use scene_keys, only: print_template
    use scene_reader, only: read_scene
@@ -48,7 +46,8 @@ program mud_host
    type(scene_t) :: scene
    type(model_t) :: model
    type(run_t) :: run
-   type(run_output_t) :: output
+   type(observers_t) :: observers
+   type(contact_alarm_t) :: contacts
    type(fault_t) :: fault
    logical :: quiet, verbose, only_check
    double precision :: t0
@@ -82,18 +81,15 @@ program mud_host
                                          option_value(options, '--fineness'), option_values(options, '--set'))
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
-   if (fault%code == 0 .and. .not. quiet) call announce()
+   if (fault%code == 0 .and. .not. quiet) call announce(model, run, verbose)
    if (fault%code == 0) call warn_of_scene()
-   if (fault%code == 0 .and. only_check .and. restart /= '') then
+   call list_observers(folder, quiet, verbose, t0, observers)
+   if (fault%code == 0 .and. restart /= '') call read_checkpoint(restart, model, run, observers, fault)
+   if (fault%code == 0 .and. .not. only_check) then
+      call run_stages(model, run, fault, observers)
+   else if (fault%code == 0 .and. restart /= '') then
       call check_restart()
-   else if (fault%code == 0 .and. .not. only_check) then
-      output%folder = folder
-      output%quiet = quiet
-      output%resume = restart /= ''
-      if (output%resume) call read_checkpoint(restart, model, run, output%tables, fault)
-      if (fault%code == 0) call run_stages(model, run, fault, output)
    end if
-   if (verbose .and. run%steps > 0) call account()
    call leave()
 contains
    !> Ends the program.
@@ -132,29 +128,12 @@ contains
 
    !> Whether the run could go on from the checkpoint, in its folder.
    subroutine check_restart()
-      call read_checkpoint(restart, model, run, output%tables, fault)
-      if (fault%code == 0) call check_tables(folder, model, output%tables, fault)
+      call observers%check_fit(model, run, fault)
       if (fault%code /= 0 .or. quiet) return
       write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
          ', step '//whole(run%at%step)//', time '//short(run%state%time)// &
          ' s; the run would go on in '//folder//'.'
    end subroutine check_restart
-
-   subroutine announce()
-      integer :: i
-
-      write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
-         whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
-         whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
-      if (verbose) write (output_unit, '(a)') size_of_run(model, run)
-      do i = 1, size(model%stages)
-         if (model%stages(i)%kind /= STATIC) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)//': '// &
-            trim(merge('dynamic     ', 'quasi_static', model%stages(i)%kind == DYNAMIC))//', rho_inf '// &
-            short(model%stages(i)%rho_inf)//'.'
-         if (model%stages(i)%controlled) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)// &
-            ': steps are controlled, tolerance '//short(model%stages(i)%step_tolerance)//'.'
-      end do
-   end subroutine announce
 
    subroutine warn_of_scene()
       character(WARNING_LENGTH), allocatable :: doubts(:)
@@ -172,29 +151,6 @@ contains
       if (.not. only_check) return
       ! A run says it where the stage begins.
       call contacts_act(model, model%stages(1), run%system%contacts)
-      call warn_of_overlap(model, 1, run%system%contacts, run%state%x)
+      call contacts%stage_begins(model, run, 1)
    end subroutine warn_of_scene
-
-   !> Time that each part of the run took.
-   subroutine account()
-      character(14), parameter :: PHASES(8) = [character(14) :: 'material', 'assembly', 'contact', 'factorisation', &
-                                               'solution', 'rest of Newton', 'output', 'all else']
-      double precision :: seconds(8), total
-      integer :: k
-
-      total = clock() - t0
-      seconds(:7) = [run%system%seconds([T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST]), &
-                     run%seconds_output]
-      seconds(8) = total - sum(seconds(:7))
-      write (output_unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
-         whole(run%cuts)//' cuts, '//whole(run%rate_evaluations)//' rate evaluations of the material; in this run '// &
-         whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
-         ' factorisations ('//whole(nint(run%system%sparse%entries, int64))//' entries), '// &
-         whole(run%system%sparse%n_solve)//' solutions by factors.'
-      write (output_unit, '(a)') size_of_run(model, run)
-      do k = 1, size(PHASES)
-         write (output_unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
-      end do
-      write (output_unit, '(3x,a,f12.3,a)') 'in all        ', total, ' s'
-   end subroutine account
 end program mud_host

@@ -15,9 +15,9 @@ module archive
 
    !> A kind of archive, and what is said of files of other kinds.
    type :: archive_kind_t
-      character(24) :: kind      !< Kind as it stands in the file.
-      character(4) :: format     !< Number that grows with every change of what is stored.
-      character(50) :: name      !< Noun for the file that a user should name.
+      character(24) :: kind      !< As it stands in the file.
+      character(4) :: format     !< Grows with every change of what is stored.
+      character(50) :: name      !< The file that a user should name.
       character(160) :: other    !< Stands behind the path of a file of another kind.
       character(60) :: remedy    !< Advice for a file of another version.
    end type archive_kind_t

@@ -58,7 +58,6 @@ module contact_interfaces
       integer, allocatable :: unknown(:)    !< Unknown of the equations for every unknown of the kernel, or of slave and
                                             !< plate; 0: none.
       logical :: acts = .true.              !< In this stage.
-      logical :: told = .false.             !< The warning of this contact has been given.
       ! Outcome of the last evaluation within a step.
       real(wp) :: thrust = 0.0_wp           !< Vertical force on the master, upwards [kN].
       real(wp) :: energy = 0.0_wp           !< Energy of the penalty [kJ].

@@ -41,8 +41,6 @@ contains
          if (fault%code == 0) call run%terms(i)%term%begin_run(model, run%solution_t, fault)
       end do
       run%next = run%state
-      if (any(model%domain%regions%stiffness_damping > 0.0_wp)) &
-         allocate (run%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
    end subroutine prepare_run
 

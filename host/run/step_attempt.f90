@@ -11,7 +11,6 @@ module step_attempt
    use contact_interfaces, only: begin_friction
    use contact_types, only: contact_message
    use convergence, only: control_t, log_t
-   use energy_ledger, only: kinetic_energy
    use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
    use given_pressures, only: follow_undrained
@@ -49,9 +48,6 @@ contains
          if (fault%code /= 0) return
          call begin_control(model, stage, run)
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
-         if (fault%code /= 0) return
-         run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
-                                                                      run%state) - run%ledger%kinetic
       end associate
    end subroutine begin_stage
 

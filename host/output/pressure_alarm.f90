@@ -7,14 +7,17 @@ module pressure_alarm
    use kinds, only: wp
    use generalised_alpha, only: STATIC
    use material_point, only: lost_pressure, PRESSURE_LOST
+   use faults, only: fault_t
    use model_types, only: model_t
    use porous_domain, only: state_t, is_present, COUPLED
+   use run_observer, only: observer_t, accepted_step_t
+   use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: AT_P_W
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: lines_t, warn_of_oscillation, warn_lost_pressure, warn_of_inflow, find_lines, find_alternation
+   public :: pressure_alarm_t, lines_t, find_lines, find_alternation
 
    !> Least amplitude of an alternation that is told, share of the range of all pressures: a field that the mesh follows
    !> bends one way at neighbouring nodes and leaves none [-].
@@ -27,9 +30,30 @@ module pressure_alarm
       integer, allocatable :: nodes(:, :)   !< (5, lines) end, middle, corner, middle, end
       real(wp), allocatable :: share(:)     !< (lines) Weight of the first middle in the mean at the corner [-].
    end type lines_t
+
+   type, extends(observer_t) :: pressure_alarm_t
+      type(lines_t) :: lines   !< Of the mesh; found when they are asked for first.
+      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.
+   contains
+      procedure :: step
+   end type pressure_alarm_t
 contains
-   !> After an accepted step; once a run, on standard error, also where the run is quiet. Not in static stages, nor of
-   !> linear pressures. docs/theory/host.md section 3.1. Raises no fault.
+   !> Warns of each once a run, on standard error, also where the run is quiet.
+   subroutine step(self, model, run, done, fault)
+      class(pressure_alarm_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+
+      associate (stage => model%stages(done%stage), never => fault)
+         call warn_of_oscillation(model, stage, run%next, self%lines, self%told_oscillation)
+         call warn_lost_pressure(model, run%next, self%told_pressure)
+         call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, self%told_inflow)
+      end associate
+   end subroutine step
+
+   !> Warns of pressures that alternate; not in static stages, nor of linear pressures. docs/theory/host.md section 3.1.
    subroutine warn_of_oscillation(model, stage, state, lines, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -61,8 +85,7 @@ contains
       end associate
    end subroutine warn_of_oscillation
 
-   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/memory-rules.md
-   !> section 2.2. Raises no fault.
+   !> Warns of a material that has lost its mean effective stress. docs/theory/memory-rules.md section 2.2.
    subroutine warn_lost_pressure(model, state, told)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state
@@ -87,8 +110,7 @@ contains
       end do
    end subroutine warn_lost_pressure
 
-   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/host.md
-   !> section 7.7. Raises no fault.
+   !> Warns of a node of a seepage face that lets water in. docs/theory/host.md section 7.7.
    subroutine warn_of_inflow(model, stage, time, drinks, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
