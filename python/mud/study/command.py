@@ -145,6 +145,7 @@ def reduced(scene: Scene, args) -> pathlib.Path:
         scene.say("effects: the budget ends before the pilots do; all stays as the scene has it")
     except Failed as failure:
         print(f"mud_study: effects: {failure}; all stays as the scene has it", file=sys.stderr)
+    scene.used += study.spent
     for row in rows:
         told = "" if row.influence is None else f"{share(row.influence)} of {row.answer}"
         by = "hand " if row.by_hand else "pilot"

@@ -65,7 +65,7 @@ def price_picture(path, study, rows):
     for p in pairs:
         axes.annotate(f"F {p.fineness:g}, a {p.tolerance:.2g}", (p.run.seconds, p.total), fontsize=7, xytext=(5, 4),
                       textcoords="offset points")
-    axes.legend(fontsize=8, frameon=False)
+    axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.01, 0.5))
     axes.margins(x=0.25, y=0.1)
     axes.set(xlabel="time of the run [s]", ylabel="error of the worst answer [-]")
     _save(figure, path)
