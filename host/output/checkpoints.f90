@@ -32,7 +32,8 @@ module checkpoints
                                         'checksum; use an older copy, or start anew.'
    character(*), parameter :: BALANCE = 'kinetic, kinetic_0, skeleton, pores, gravity, loads, supports, '// &
                                         'contact, friction, seepage, damping [kJ], outflow, outflow_air [m3], '// &
-                                        'largest_work, open_0, most_created [kJ], overdue [-], tolerated [kJ]'
+                                        'largest_work, open_0, most_created [kJ], overdue [-], tolerated [kJ], '// &
+                                        'water: gained, turned, received, moved, open_0 [m3]'
 contains
    !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one. Fault
    !> EXIT_OUTPUT: a table or the checkpoint cannot be written.

@@ -9,10 +9,11 @@ module energy_ledger
    use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
    use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, is_present, gravity_on, &
-                            COUPLED, OUTFLOWS
+                            COUPLED, UNDRAINED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
+   use water_balance, only: water_t, book_storage, book_water
    implicit none (type, external)
    private
    public :: ledger_t, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, imbalance
@@ -40,12 +41,14 @@ module energy_ledger
       !> Most that residuals within Newton's tolerance can have done: in all steps before a work exceeds it, then in one
       !> step [kJ].
       real(wp) :: tolerated = 0.0_wp
+      type(water_t) :: water            !< Of the pores and through the boundaries.
    end type ledger_t
 
    !> Works of the mean forces of a step [kJ].
    type :: work_t
       real(wp) :: skeleton = 0.0_wp, pores = 0.0_wp, gravity = 0.0_wp, damping = 0.0_wp
       real(wp) :: inertia = 0.0_wp   !< By the mean acceleration, the change of velocity over the step.
+      type(water_t) :: water         !< What the pores take up; carried along since the points are looked at here.
    end type work_t
 contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
@@ -90,6 +93,9 @@ contains
       ledger%pores = ledger%pores + work%pores
       ledger%gravity = ledger%gravity + work%gravity
       ledger%damping = ledger%damping + work%damping
+      ledger%water%gained = ledger%water%gained + work%water%gained
+      ledger%water%turned = ledger%water%turned + work%water%turned
+      call book_water(dofs, scheme, constraint, reaction, old, new, ledger%water)
       call book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
       call book_outflow(dofs, scheme, constraint, reaction, old%s_rate(size(old%s) + 1:), &
                         new%s_rate(size(new%s) + 1:), ledger)
@@ -230,16 +236,20 @@ contains
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
-      real(wp) :: damping(4), strain(4), p(2), middle(2, 6), s, n, rho, gravity, push(DISPLACEMENTS)
+      real(wp) :: damping(4), strain(4), p(2), middle(2, 6), rise(2, 6), s, n, rho, gravity, push(DISPLACEMENTS)
       real(wp) :: dv(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
+      logical :: keeps_water
 
       gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
       node = domain%mesh%t6(:, e)
       dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
       associate (carriers => domain%carriers(:domain%n_carriers(e), e))
          middle(:, :size(carriers)) = 0.5_wp*(old%x(AT_P_W:, carriers) + new%x(AT_P_W:, carriers))
+         rise(:, :size(carriers)) = new%x(AT_P_W:, carriers) - old%x(AT_P_W:, carriers)
       end associate
+      keeps_water = scheme%kind /= STATIC .and. domain%with_w .and. &
+                    any(domain%regions(domain%region_of(e))%drainage == [COUPLED, UNDRAINED])
       do g = 1, domain%rule
          at = (e - 1)*domain%rule + g
          associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
@@ -252,6 +262,11 @@ contains
             n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
             p = pressures_at(domain, e, g, middle)
             work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
+            if (keeps_water) then
+               p = pressures_at(domain, e, g, rise)
+               call book_storage(gp%weight, sum(strain(1:3)), n, s, new%s(at) - old%s(at), p(1)/domain%fluids%k_w, &
+                                 work%water)
+            end if
             rho = mixture_density(domain, region, n, s)
             work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
             if (scheme%kind /= DYNAMIC) cycle

@@ -13,7 +13,6 @@ module run_state
    use porous_domain, only: state_t
    use pressure_alarm, only: lines_t
    use sparsity_pattern, only: pattern_t
-   use water_balance, only: water_t
    implicit none (type, external)
    private
    public :: run_t, stage_state_t
@@ -50,9 +49,8 @@ module run_state
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Of the material.
       ! Warnings that are said once.
-      type(water_t) :: water                   !< Of the stage under way.
       type(lines_t) :: lines                   !< Of the mesh, for the first of them.
-      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.
+      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false., told_dry = .false.
       real(wp) :: seconds_output = 0.0_wp      !< Wall time.
    end type run_t
 end module run_state

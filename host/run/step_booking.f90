@@ -10,7 +10,7 @@ module step_booking
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
    use run_state, only: run_t
-   use water_balance, only: book_water
+   use water_balance, only: begin_water
    implicit none (type, external)
    private
    public :: book_accepted_step
@@ -25,6 +25,7 @@ contains
 
       ! the velocities of a stage without inertia are no motion: each stage begins its own account
       if (run%at%step == 1 .and. run%steps > 1) run%ledger%open_0 = imbalance(run%ledger)
+      if (run%at%step == 1) call begin_water(run%ledger%outflow - run%ledger%outflow_air, run%ledger%water)
       t0 = clock()
       allocate (contact_force(0))
       if (allocated(run%system%contacts%interfaces)) then
@@ -37,7 +38,6 @@ contains
       run%ledger%friction = run%ledger%friction + dissipated
       call book_creation(scheme, model%stages(run%at%stage)%tolerance, model%dofs, run%assembly%scale, &
                          run%next%x - run%state%x, run%ledger)
-      call book_water(model%dofs, scheme, run%constraint, run%system%reaction, run%water)
       if (scheme%kind == DYNAMIC) call count_creation(model%stages(run%at%stage)%created_energy, run%ledger)
    end subroutine book_accepted_step
 

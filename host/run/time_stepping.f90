@@ -23,9 +23,9 @@ module time_stepping
    use energy_alarm, only: check_creation, warn_of_created_energy
    use ground_stages, only: change_ground
    use contact_alarm, only: warn_of_penetration, warn_of_overlap
-   use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow
+   use pressure_alarm, only: warn_of_oscillation, warn_lost_pressure, warn_of_inflow, warn_of_dry_ground
    use unknown_fields, only: DISPLACEMENTS
-   use water_balance, only: water_t, warn_of_missing_water
+   use water_balance, only: warn_of_missing_water
    use scene_types, only: stage_t
    use texts, only: short, whole
    implicit none (type, external)
@@ -52,8 +52,8 @@ contains
       do i = max(1, run%at%stage), size(model%stages)
          call run_stage(model, i, run, fault, observer)
          if (warns(observer)) call warn_of_created_energy(model%stages(i), run%ledger)
-         if (warns(observer)) call warn_of_missing_water(model%stages(i), run%water)
-         run%water = water_t()
+         if (warns(observer) .and. model%domain%full_rate) call warn_of_missing_water(model%stages(i), &
+            run%ledger%water, run%ledger%outflow - run%ledger%outflow_air)
          t0 = clock()
          ! Also after a failure, which is reported, not what its last output may meet.
          last = fault_t()
@@ -152,6 +152,7 @@ contains
          if (warns(observer)) call warn_of_oscillation(model, stage, run%next, run%lines, run%told_oscillation)
          if (warns(observer)) call warn_lost_pressure(model, run%next, run%told_pressure)
          if (warns(observer)) call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, run%told_inflow)
+         if (warns(observer)) call warn_of_dry_ground(model, stage, run%next, run%told_dry)
          call book_accepted_step(model, scheme, run)
          report = step_report_t(number, dt, run%control%error, &
                                 indicators_of(model, number, dt, run%constraint%mass, run%state, run%next), &
