@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings of a run whose pore water pressures alternate from node to node (docs/theory/host.md section 3.1), in which
-!> a node of a seepage face lets water in (section 7.7), or in which a material made for compression has lost its mean
-!> effective stress and has no guard that would have kept it.
+!> a node of a seepage face lets water in (section 7.7), the pore water is under a tension that no soil holds (section
+!> 9.2), or in which a material made for compression has lost its mean effective stress and has no guard that would have
+!> kept it.
 module pressure_alarm
    use warnings, only: print_warning
    use kinds, only: wp
@@ -24,6 +25,7 @@ module pressure_alarm
    real(wp), parameter :: ALARMING_SHARE = 0.1_wp
    real(wp), parameter :: STRAIGHT = -0.8_wp        !< Cosine of the angle between two sides that go on from each other.
    real(wp), parameter :: SMALLEST_RANGE = 0.1_wp   !< [kPa] Of pressures that anybody looks at.
+   real(wp), parameter :: OVEN_DRY = 1.0e6_wp       !< [kPa] Suction of soil from the oven: none holds water beyond it.
 
    !> Lines of five nodes of a mesh: two sides that go on from each other at a corner.
    type :: lines_t
@@ -33,7 +35,7 @@ module pressure_alarm
 
    type, extends(observer_t) :: pressure_alarm_t
       type(lines_t) :: lines   !< Of the mesh; found when they are asked for first.
-      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.
+      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false., told_dry = .false.
    contains
       procedure :: step
    end type pressure_alarm_t
@@ -50,6 +52,7 @@ contains
          call warn_of_oscillation(model, stage, run%next, self%lines, self%told_oscillation)
          call warn_lost_pressure(model, run%next, self%told_pressure)
          call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, self%told_inflow)
+         call warn_of_dry_ground(model, stage, run%next, self%told_dry)
       end associate
    end subroutine step
 
@@ -127,6 +130,27 @@ contains
             'refine the mesh there.')
       end associate
    end subroutine warn_of_inflow
+
+   !> Warns of pore water under more tension than any soil holds: more is drawn than the ground has, or lets through,
+   !> and water that expands makes up for it. docs/theory/host.md section 9.2.
+   subroutine warn_of_dry_ground(model, stage, state, told)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(state_t), intent(in) :: state
+      logical, intent(inout) :: told
+      integer :: node
+
+      if (told .or. .not. model%domain%with_w) return
+      node = minloc(state%x(AT_P_W, :size(model%domain%mesh%x, 2)), dim=1)
+      if (state%x(AT_P_W, node) > -OVEN_DRY) return
+      told = .true.
+      associate (x => model%domain%mesh%x(:, node))
+         call print_warning('stage '//trim(stage%name)//', time '//short(state%time)//' s: the pore water at ('// &
+            short(x(1))//', '//short(x(2))//') m is under a tension of '//short(-state%x(AT_P_W, node))//' kPa. '// &
+            'Soil is oven-dry at '//short(OVEN_DRY)//' kPa: more is drawn than the ground holds or lets through, '// &
+            'and the rest comes out of water that expands. Let a &fix of p_w, or a &history, limit what is drawn.')
+      end associate
+   end subroutine warn_of_dry_ground
 
    !> The lines of a mesh: at every corner the pairs of sides that go on from each other.
    pure function find_lines(x, t6) result(lines)

@@ -9,10 +9,10 @@ module dashpots
    use generalised_alpha, only: scheme_t, DYNAMIC
    use porous_domain, only: state_t
    use sparsity_pattern, only: pattern_t, place_of
-   use unknown_fields, only: DISPLACEMENTS
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: dashpots_t, add_dashpots, work_of_dashpots
+   public :: dashpots_t, add_dashpots, work_of_dashpots, water_through_dashpots
 
    type :: dashpots_t
       logical :: acts = .false.                  !< In the step under way.
@@ -75,4 +75,28 @@ contains
          end do
       end do
    end function work_of_dashpots
+
+   !> Water that has left in a step through those that act [m3], in proportion to the changes of the pressures. The row
+   !> of p_w is that of both fluids, but for nodes whose air pressure is prescribed.
+   pure real(wp) function water_through_dashpots(list, dofs, air, change) result(water)
+      type(dashpots_t), intent(in) :: list(:)   !< (boundaries with dashpots)
+      type(dofs_t), intent(in) :: dofs
+      logical, intent(in) :: air(:)             !< (nodes) The air pressure is prescribed.
+      real(wp), intent(in) :: change(:, :)      !< (FIELDS, nodes) Of the unknowns [m, kPa].
+      integer :: i, k
+
+      water = 0.0_wp
+      do i = 1, size(list)
+         if (.not. list(i)%acts) cycle
+         do k = 1, size(list(i)%row)
+            associate (column => list(i)%column(k), row => list(i)%row(k), value => list(i)%value(k))
+               if (dofs%field(row) == AT_P_W) then
+                  water = water + value*change(dofs%field(column), dofs%node(column))
+               else if (dofs%field(row) == AT_P_C .and. .not. air(dofs%node(row))) then
+                  water = water - value*change(dofs%field(column), dofs%node(column))
+               end if
+            end associate
+         end do
+      end do
+   end function water_through_dashpots
 end module dashpots

@@ -319,7 +319,7 @@ def test_water_that_a_flow_of_air_hides_is_told():
         check(f"{name} runs", done.returncode == 0, done.stderr)
         lost = abs(water_gained(name) / (1e-8 * 0.3 * 8e4) - 1)
         check(f"{name}: more than 2 % is lost: {told}", (lost > 0.02) == told, lost)
-        said = re.search(r"leave (\S+) m3, (\S+) % of the water", done.stderr)
+        said = re.search(r"(\S+) m3 of water are \w+ in the ground, (\S+) % of what", done.stderr)
         check(f"{name}: told {told}", (said is not None) == told, done.stderr)
         # Told of what came and went, and here little but the rain came.
         check(f"{name}: as much as is lost", not told or abs(float(said[2]) / 100 / lost - 1) < 0.2, (said, lost))
