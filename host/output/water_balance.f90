@@ -11,7 +11,7 @@ module water_balance
    use warnings, only: print_warning
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
-   use generalised_alpha, only: scheme_t, STATIC
+   use generalised_alpha, only: scheme_t
    use prescribed_values, only: constraint_t
    use scene_types, only: stage_t
    use texts, only: short
@@ -84,7 +84,7 @@ contains
       real(wp) :: left, inflow
       integer :: node, w, c
 
-      if (scheme%kind == STATIC) return
+      if (.not. scheme%has_rates) return
       do node = 1, size(constraint%air)
          w = dofs%of(AT_P_W, node)
          c = dofs%of(AT_P_C, node)
