@@ -11,7 +11,7 @@ module element_equations
                             COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
                              U
-   use generalised_alpha, only: scheme_t, DYNAMIC
+   use generalised_alpha, only: scheme_t
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
    implicit none (type, external)
@@ -182,8 +182,8 @@ contains
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%gravity = gravity
             k(g)%speed = 0.0_wp
-            if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(nodes%v0, gp%n)
-            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(nodes%v, gp%n)
+            if (scheme%has_inertia) k(g)%velocity = matmul(nodes%v0, gp%n)
+            if (region%damping > 0.0_wp .and. scheme%has_inertia) k(g)%speed = matmul(nodes%v, gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &
                k(g)%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
@@ -205,7 +205,7 @@ contains
       nodes%u0 = old%x(:DISPLACEMENTS, node)
       nodes%u1 = new%x(:DISPLACEMENTS, node)
       nodes%a = 0.0_wp
-      if (scheme%kind == DYNAMIC) nodes%a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+      if (scheme%has_inertia) nodes%a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
       nodes%v0 = old%v(:DISPLACEMENTS, node)
       nodes%v = nodes%v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - nodes%v0)
       if (domain%n_carriers(element) == 0) return
@@ -282,7 +282,7 @@ contains
                change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), &
                          response), &
                change)
-            if (scheme%kind == DYNAMIC) call add_flight_scale(domain, region, k(g), scheme, skeleton, gp, out%stretch)
+            if (scheme%has_inertia) call add_flight_scale(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, rows, n_fields, tangent, sums%k)
          end associate
       end do
@@ -358,7 +358,7 @@ contains
       k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
       k%div_v = sum(rates)
       k%accel = 0.0_wp
-      if (scheme%kind == DYNAMIC) then
+      if (scheme%has_inertia) then
          do i = 1, 6
             k%accel = k%accel + nodes%a(:, i)*gp%n(i)
          end do

@@ -9,7 +9,7 @@ module porous_balance
    use porous_domain, only: domain_t, region_t, COUPLED, UNDRAINED
    use permeability_laws, only: relative_t, relative_permeability
    use retention_curves, only: saturation_t
-   use generalised_alpha, only: scheme_t, rate_of, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t, rate_of
    implicit none (type, external)
    private
    public :: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, &
@@ -88,7 +88,7 @@ contains
       if (with_tangent) tangent = 0.0_wp
       drift = 0.0_wp
       call add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
-      if (scheme%kind == STATIC) return
+      if (.not. scheme%has_rates) return
       if (region%drainage /= COUPLED .and. region%drainage /= UNDRAINED) return
       if (region%drainage == COUPLED) &
          mix%rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
@@ -139,7 +139,7 @@ contains
       type(scheme_t), intent(in) :: scheme
 
       level = scheme%l_f
-      if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC .and. scheme%c_v > 0.0_wp) &
+      if (region%stiffness_damping > 0.0_wp .and. scheme%has_inertia .and. scheme%c_v > 0.0_wp) &
          level = level + region%stiffness_damping/scheme%dt
    end function level_of_stress
 
@@ -149,7 +149,7 @@ contains
       type(scheme_t), intent(in) :: scheme
 
       slope = scheme%c_a
-      if (scheme%kind == DYNAMIC) slope = slope + region%damping*scheme%c_v
+      if (scheme%has_inertia) slope = slope + region%damping*scheme%c_v
    end function slope_of_inertia
 
    !> Void ratio and saturation at the end of the step, and the mixture at its levels: saturated where the scene has no

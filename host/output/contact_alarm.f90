@@ -5,7 +5,7 @@ module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts, shortest_edge
-   use generalised_alpha, only: DYNAMIC
+   use generalised_alpha, only: has_inertia
    use faults, only: fault_t
    use model_types, only: model_t
    use run_observer, only: observer_t, accepted_step_t
@@ -76,8 +76,8 @@ contains
 
          text = 'a dynamic stage throws the surfaces apart. If that is not meant, move the plate or the mesh so '// &
                 'that they only touch, or find the prestress in a static stage before.'
-         if (kind /= DYNAMIC) text = 'the stage finds the prestress. If none is meant, move the plate or the mesh '// &
-            'until they overlap by no more than '//short(least)//' m, which is enough for what contact alone holds.'
+         if (.not. has_inertia(kind)) text = 'the stage finds the prestress. If none is meant, move the plate or '// &
+            'the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact alone holds.'
       end function advice
    end subroutine stage_begins
 

@@ -13,7 +13,7 @@ module energy_ledger
                             COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
-   use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t
    implicit none (type, external)
    private
    public :: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, &
@@ -78,7 +78,7 @@ contains
             call add_work_of_element(domain, e, scheme, old, new, damping_stress, change(:, node), work)
             ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, damping_stress, &
                                                                      held(:, node))
-            if (.not. domain%with_w .or. scheme%kind == STATIC) cycle
+            if (.not. domain%with_w .or. .not. scheme%has_rates) cycle
             if (domain%regions(domain%region_of(e))%drainage == COUPLED) &
                call book_seepage(domain, e, scheme, old, new, ledger)
          end associate
@@ -117,7 +117,7 @@ contains
       real(wp), intent(inout) :: damping_stress(:, :)
       integer :: e, p
 
-      if (scheme%kind /= DYNAMIC) then
+      if (.not. scheme%has_inertia) then
          damping_stress = 0.0_wp
          return
       end if
@@ -171,7 +171,7 @@ contains
             ledger%contact = ledger%contact + touch*change(f, k)
             if (.not. constraint%fixed(i)) cycle
             ledger%supports = ledger%supports + (touch - load)*change(f, k)
-            if (scheme%kind == DYNAMIC) ledger%supports = ledger%supports &
+            if (scheme%has_inertia) ledger%supports = ledger%supports &
                + constraint%mass(i)*(new%v(f, k) - old%v(f, k))/scheme%dt*change(f, k)
          end associate
       end do
@@ -192,7 +192,7 @@ contains
       integer :: i
 
       after = 0.0_wp
-      if (scheme%kind == STATIC) return
+      if (.not. scheme%has_rates) return
       flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
       do i = 1, dofs%n
          if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
@@ -255,7 +255,7 @@ contains
             work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
             rho = mixture_density(domain, region, n, s)
             work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
-            if (scheme%kind /= DYNAMIC) cycle
+            if (.not. scheme%has_inertia) cycle
             push = gp%weight*rho*matmul(du, gp%n)
             work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt
             if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
@@ -351,7 +351,7 @@ contains
       else
          ledger%tolerated = max(ledger%tolerated, tolerance*work)
       end if
-      if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
+      if (scheme%has_inertia) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 
    !> After book_creation: counts the steps in a row in which more energy is created than a stage allows. The first step

@@ -11,7 +11,7 @@ module ledger_observer
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
    use faults, only: fault_t, raise
-   use generalised_alpha, only: DYNAMIC
+   use generalised_alpha, only: has_inertia
    use kinds, only: wp
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
@@ -115,10 +115,10 @@ contains
                         run%state, run%next, self%damping_stress, ledger)
          call book_creation(done%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &
                             ledger)
-         if (stage%kind == DYNAMIC) call count_creation(stage%created_energy, ledger)
+         if (has_inertia(stage%kind)) call count_creation(stage%created_energy, ledger)
          self%indicators = indicators_of(model, done%stage, done%scheme%dt, run%constraint%mass, run%state, run%next)
          done%contact_work = ledger%contact
-         if (stage%kind /= DYNAMIC) return
+         if (.not. has_inertia(stage%kind)) return
          if (ledger%overdue < merge(1.0_wp, PATIENCE, done%last)) return
          call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(run%next%time)// &
                     ' s: the run has created '//amount(ledger)//', allowed '//short(100*stage%created_energy)// &
@@ -173,7 +173,7 @@ contains
       end associate
       associate (stage => model%stages(run%at%stage), ledger => self%ledger)
          if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
-         if (stage%kind /= DYNAMIC .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
+         if (.not. has_inertia(stage%kind) .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
          if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
          call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &
             '. Do not use its results: '//REMEDY//'.')

@@ -6,7 +6,7 @@
 module pressure_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use generalised_alpha, only: STATIC
+   use generalised_alpha, only: has_rates
    use material_point, only: lost_pressure, PRESSURE_LOST
    use faults, only: fault_t
    use model_types, only: model_t
@@ -68,7 +68,7 @@ contains
       integer :: node, e
 
       ! Linear pressures are those of the corners alone.
-      if (told .or. stage%kind == STATIC .or. model%domain%n_p < 6) return
+      if (told .or. .not. has_rates(stage%kind) .or. model%domain%n_p < 6) return
       associate (mesh => model%domain%mesh)
          ! Pressures that are no unknowns of the ground do not count.
          counts = .false.

@@ -7,7 +7,7 @@ module reaction_rows
    use boundary_conditions, only: prescribing_fixes, forces_of_supports
    use csv, only: quoted
    use contact_drainage, only: drainage_t
-   use generalised_alpha, only: scheme_t, make_scheme, STATIC
+   use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, factor_at
    use prescribed_values, only: constraint_t
    use scene_types, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
@@ -145,7 +145,7 @@ contains
          call prescribing_fixes(model, stage, model%dofs, drainage, time, by, air_by)
          sums(:DISPLACEMENTS, :) = forces_of_supports(model, by, reaction)
          associate (dofs => model%dofs)
-            if (scheme%kind == STATIC .or. .not. model%domain%with_w) return
+            if (.not. scheme%has_rates .or. .not. model%domain%with_w) return
             do i = 1, size(air_by)
                if (dofs%of(AT_P_W, i) == 0) cycle
                w = reaction(dofs%of(AT_P_W, i))

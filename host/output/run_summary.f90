@@ -1,17 +1,16 @@
 ! SPDX-License-Identifier: MIT
-!> Observer that says what a run is, what came of it: the largest value of every answer, the steps and what kept them
+!> Observer that says what came of a run: the largest value of every answer, the steps and what kept them
 !> short, the warnings again, and that errors are not known to it.
 module run_summary
    use, intrinsic :: iso_fortran_env, only: output_unit
    use archive, only: archive_t
    use faults, only: fault_t
-   use generalised_alpha, only: STATIC, DYNAMIC
    use kinds, only: wp
    use control_state, only: LIMITS, LIMIT_NAMES
    use model_types, only: model_t
    use named_points, only: unknowns_at
    use porous_domain, only: UNDRAINED
-   use run_cost, only: size_of_run, print_cost
+   use run_cost, only: print_cost
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
    use scene_types, only: point_t
@@ -21,7 +20,7 @@ module run_summary
    use warnings, only: repeat_warnings
    implicit none (type, external)
    private
-   public :: summary_observer_t, announce
+   public :: summary_observer_t
 
    integer, parameter :: DIGITS_SAID = 3   !< Of a value; of a time as many as tell it from that of the step before.
 
@@ -44,26 +43,6 @@ module run_summary
       procedure :: ends
    end type summary_observer_t
 contains
-   !> Says what is going to run.
-   subroutine announce(model, run, verbose)
-      type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      logical, intent(in) :: verbose   !< With its memory.
-      integer :: i
-
-      write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
-         whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
-         whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
-      if (verbose) write (output_unit, '(a)') size_of_run(model, run)
-      do i = 1, size(model%stages)
-         if (model%stages(i)%kind /= STATIC) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)//': '// &
-            trim(merge('dynamic     ', 'quasi_static', model%stages(i)%kind == DYNAMIC))//', rho_inf '// &
-            short(model%stages(i)%rho_inf)//'.'
-         if (model%stages(i)%controlled) write (output_unit, '(a)') 'Stage '//trim(model%stages(i)%name)// &
-            ': steps are controlled, tolerance '//short(model%stages(i)%step_tolerance)//'.'
-      end do
-   end subroutine announce
-
    !> Exchanges the largest values so far.
    subroutine exchange(self, archive)
       class(summary_observer_t), intent(inout) :: self

@@ -7,7 +7,7 @@ module water_balance
    use dashpots, only: water_through_dashpots
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
-   use generalised_alpha, only: scheme_t, STATIC
+   use generalised_alpha, only: scheme_t
    use kinds, only: wp
    use model_types, only: model_t
    use porous_domain, only: domain_t, state_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
@@ -69,7 +69,7 @@ contains
 
       associate (never => fault)
       end associate
-      if (done%scheme%kind == STATIC .or. .not. model%domain%with_w) return
+      if (.not. done%scheme%has_rates .or. .not. model%domain%with_w) return
       call book_boundaries(model%dofs, done%scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            self%water)
       do e = 1, size(model%domain%region_of)

@@ -6,7 +6,7 @@ module dashpots
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
-   use generalised_alpha, only: scheme_t, DYNAMIC
+   use generalised_alpha, only: scheme_t
    use porous_domain, only: state_t
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -34,7 +34,7 @@ contains
       real(wp) :: force, level, slope
       integer :: i, k, f, node, place
 
-      if (scheme%kind /= DYNAMIC) return
+      if (.not. scheme%has_inertia) return
       do i = 1, size(list)
          if (.not. list(i)%acts) cycle
          associate (row => list(i)%row, column => list(i)%column, value => list(i)%value)
