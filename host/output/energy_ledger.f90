@@ -30,7 +30,7 @@ module energy_ledger
       real(wp) :: gravity = 0.0_wp    !< Work of weight [kJ].
       real(wp) :: loads = 0.0_wp, supports = 0.0_wp      !< Work of loads and of prescribed displacements [kJ].
       real(wp) :: contact = 0.0_wp    !< Work done on contacts: on their penalty, and by friction [kJ].
-      real(wp) :: friction = 0.0_wp   !< Of it, dissipated by sliding [kJ].
+      real(wp) :: dissipated = 0.0_wp   !< Work that terms dissipated, as sliding does [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
       real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures, less rain: both, air [m3].
@@ -396,7 +396,7 @@ contains
       call archive%exchange('loads', ledger%loads, 'kJ', 'work of loads')
       call archive%exchange('supports', ledger%supports, 'kJ', 'work of prescribed displacements')
       call archive%exchange('contact', ledger%contact, 'kJ', 'work done on contacts')
-      call archive%exchange('friction', ledger%friction, 'kJ', 'energy dissipated by sliding')
+      call archive%exchange('dissipated', ledger%dissipated, 'kJ', 'energy that terms dissipated, as by sliding')
       call archive%exchange('seepage', ledger%seepage, 'kJ', 'energy dissipated by seepage')
       call archive%exchange('damping', ledger%damping, 'kJ', 'energy dissipated by damping')
       call archive%exchange('outflow', ledger%outflow, 'm3', 'outflow of both fluids, less rain')

@@ -138,7 +138,7 @@ contains
 
       associate (unused => model, neither => earlier)
       end associate
-      self%ledger%friction = self%ledger%friction + run%dissipated
+      self%ledger%dissipated = self%ledger%dissipated + run%dissipated
       if (is_open(self%table)) call write_ledger(self%table, run%state%time, done, self%indicators, self%ledger, fault)
    end subroutine taken_over
 
@@ -153,7 +153,7 @@ contains
          write (table%row, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))') time, done%scheme%dt, &
             done%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
             real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
-            ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%friction, imbalance(ledger), &
+            ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%dissipated, imbalance(ledger), &
             ledger%outflow, ledger%outflow_air, done%error, indicators
       end associate
       call write_row(table, fault)

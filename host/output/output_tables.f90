@@ -197,7 +197,7 @@ contains
             call open_table(path, head, self%reactions%bytes > 0, self%reactions, fault)
             if (fault%code /= 0) return
          end if
-         write (self%reactions%row, NUMBERS) reaction_row(model, stage, run%drainage, run%constraint, &
+         write (self%reactions%row, NUMBERS) reaction_row(model, stage, run%constraint, &
                                                             run%system%reaction, run%state%time, dt)
          call write_row(self%reactions, fault)
       end associate

@@ -4,7 +4,6 @@ module run_state
    use, intrinsic :: iso_fortran_env, only: int64
    use archive, only: archive_t
    use kinds, only: wp
-   use contact_drainage, only: drainage_t
    use contact_interfaces, only: exchange_contacts
    use control_state, only: control_state_t, new_control_state, exchange_control
    use initial_conditions, only: tension_t
@@ -18,12 +17,11 @@ module run_state
 
    type, extends(solution_t) :: run_t
       type(term_box_t), allocatable :: terms(:)   !< Those of the model, with what they keep from step to step.
-      type(drainage_t) :: drainage
       type(tension_t) :: tension               !< Of the initial state, for a warning.
       type(control_state_t) :: control         !< Of the time step, in stages that choose it.
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Of the material.
-      real(wp) :: dissipated = 0.0_wp          !< By sliding, in the last accepted step [kJ].
+      real(wp) :: dissipated = 0.0_wp          !< Energy that terms dissipated in the last accepted step [kJ].
       real(wp) :: seconds_output = 0.0_wp      !< Wall time of the observers.
    end type run_t
 contains

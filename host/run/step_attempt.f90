@@ -3,13 +3,9 @@
 !> docs/theory/host.md section 4.4.
 module step_attempt
    use kinds, only: wp
-   use exit_codes, only: EXIT_CONVERGENCE
-   use faults, only: fault_t, raise
+   use faults, only: fault_t
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at, rain_at
-   use contact_drainage, only: find_impervious_nodes
-   use contact_interfaces, only: begin_friction
-   use contact_types, only: contact_message
    use convergence, only: control_t, log_t
    use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
@@ -170,7 +166,6 @@ contains
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      character(400) :: text
       integer :: i
 
       associate (c => run%constraint, until => run%state%time + dt)
@@ -187,14 +182,7 @@ contains
             c%load_1 = c%load_1 - (1 - run%at%share_of(stage%duration, until))*run%at%sudden
          end if
       end associate
-      call find_impervious_nodes(model, run%drainage, run%system%contacts, run%state%x, fault)
-      if (fault%code /= 0) return
-      if (.not. begin_friction(run%system%contacts, run%state%x)) then
-         call contact_message(run%system%contacts%status, text)
-         call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//trim(text)//'.')
-         return
-      end if
-      call constrain_step(model, stage, model%dofs, run%drainage, run%state%time + dt, run%at%x_start, run%constraint)
+      call constrain_step(model, stage, model%dofs, run%state%time + dt, run%at%x_start, run%constraint)
       do i = 1, size(run%terms)
          call run%terms(i)%term%prescribe(model, run%state%time + dt, run%solution_t)
       end do

@@ -3,7 +3,7 @@
 module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
-   use contact_interfaces, only: stretch_ties, accept_friction
+   use contact_interfaces, only: stretch_ties
    use contact_setup, only: contacts_act
    use convergence, only: control_t, log_t
    use generalised_alpha, only: scheme_t
@@ -111,6 +111,7 @@ contains
       type(accepted_step_t) :: done
       type(scheme_t) :: scheme
       type(fault_t) :: verdict
+      integer :: i
 
       associate (stage => model%stages(number), at => run%at)
          ! How it was taken, before it counts.
@@ -120,7 +121,10 @@ contains
          done = accepted_step_t(number, scheme, control, log, run%control%error, &
                                 at%t_start + stage%duration - run%next%time <= LAST_STEP*dt)
          call observers%see_step(model, run, done, verdict)
-         call accept_friction(run%system%contacts, run%next%x, run%dissipated)
+         run%dissipated = 0.0_wp
+         do i = 1, size(run%terms)
+            call run%terms(i)%term%accept(run%solution_t, run%dissipated)
+         end do
          call keep_step(model, stage, dt, run)
          call take_over(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))

@@ -154,7 +154,6 @@ module scene_types
       integer :: slave = 0, master = 0               !< Groups of the mesh.
       integer :: plate = 0                           !< The master as a plate with a face of its own, 0: it is none.
       type(contact_options_t) :: options
-      logical :: drains_by_state = .false.           !< Covered nodes are impervious.
       character(LENGTH), allocatable :: stages(:)
    end type contact_pair_t
 

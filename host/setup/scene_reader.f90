@@ -13,7 +13,7 @@ module scene_reader
    use scene_names, only: check_names
    use scene_refinement, only: refine_mesh
    use scene_settings, only: apply_settings
-   use scene_types, only: scene_t, scene_item_t
+   use scene_types, only: scene_t
    use stage_histories, only: place_histories
    implicit none (type, external)
    private

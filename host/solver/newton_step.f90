@@ -5,7 +5,7 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE
-   use contact_interfaces, only: add_contacts, contact_forces, follow_friction, friction_turns, &
+   use contact_interfaces, only: add_contacts, contact_forces, follow_turns, contacts_turn, &
                                  rounding_of_ties
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
                           rounding_in, BY_FORCES, BY_CHANGE
@@ -69,7 +69,7 @@ contains
       call follow_newton(control%tolerance, domain%regions)
       rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
       if (rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES))
-      call follow_friction(system%contacts, fresh=.true.)
+      call follow_turns(system%contacts, fresh=.true.)
       if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
          log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, touched))
          if (log%outcome /= CONVERGED) return
@@ -95,7 +95,7 @@ contains
          if (log%iterations > 0) then
             call choose_sides(dofs, pattern, assembly%values, new%x, rhs, assembly%scale, control%tolerance, &
                               constraint, turned)
-            turned = turned .or. friction_turns(system%contacts)
+            turned = turned .or. contacts_turn(system%contacts)
             call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
             if (log%iterations == 1) log%first_error = log%error
             norm = norm2(pack(rhs, .not. constraint%fixed))
@@ -154,7 +154,7 @@ contains
          end if
          t0 = clock()
          log%iterations = log%iterations + 1
-         call follow_friction(system%contacts, fresh=.false.)
+         call follow_turns(system%contacts, fresh=.false.)
          log%before = log%changed
          call add_correction(dofs, dx, new%x, log%correction, log%changed)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
@@ -163,7 +163,7 @@ contains
       ! Those of iterates on the way, and of steps that fail, may be of any size.
       system%largest = max(system%largest, log%forces)
       system%first_error = maxval(log%first_error)
-      call follow_friction(system%contacts, fresh=.true.)
+      call follow_turns(system%contacts, fresh=.true.)
       assembly%slopes%known = .true.
       call add_elapsed(system%seconds(T_REST), t0)
    contains

@@ -8,12 +8,13 @@ module prescribed_values
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: constraint_t, constrain, loads_of_water
+   public :: constraint_t, is_released, constrain, loads_of_water
 
    !> Prescribed unknowns and loads of a step.
    type :: constraint_t
       logical, allocatable :: fixed(:)        !< Unknowns
       real(wp), allocatable :: target(:)      !< values of the unknowns that are fixed, at the end of the step
+      logical, allocatable :: released(:, :)  !< (fixes, nodes) Where no &fix acts in this step; not allocated: nowhere.
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
       real(wp), allocatable :: air_target(:)
       ! Where a pressure has a limit the target is that, and `fixed` says whether it stands there.
@@ -30,6 +31,15 @@ module prescribed_values
       integer, allocatable :: bodies(:, :)    !< (3, bodies that turn) Their unknowns.
    end type constraint_t
 contains
+   !> Whether a &fix has no effect at a node in this step.
+   pure logical function is_released(constraint, fix, node)
+      type(constraint_t), intent(in) :: constraint
+      integer, intent(in) :: fix, node   !< Numbers.
+
+      is_released = .false.
+      if (allocated(constraint%released)) is_released = constraint%released(fix, node)
+   end function is_released
+
    !> Rows of prescribed unknowns say what is missing of their value; the diagonal keeps its size. docs/theory/host.md
    !> section 7.1.
    subroutine constrain(dofs, pattern, constraint, x, values, rhs)

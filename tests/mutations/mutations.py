@@ -241,7 +241,7 @@ MUTATIONS = [
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
 SPRINGS = "contact/plate_springs.f90"
 SEARCH, PLATE, JOINED = "contact/contact_search.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
-DRAINAGE = "model/contact_drainage.f90"
+DRAINAGE = "terms/contact_drainage.f90"
 
 # Of the host's contact, below host.
 CONTACT = [
@@ -279,12 +279,12 @@ CONTACT = [
     ("slopes against the values within the step", (JOINED, "values(place) + share*value(k)", "values(place) + value(k)")),
     ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            call probe_one(t, x, with_tangent",
                                           "call probe_one(t, x, with_tangent")),
-    ("drainage without coverage", (DRAINAGE, "point%coverage >= HALF", "point%coverage > 0.0_wp")),
-    ("drainage without pressure", (DRAINAGE, "point%pressure > 0.0_wp .and. ", "")),
-    ("a released node stays so", (DRAINAGE, "drainage%released = .false.\n      do c", "do c")),
+    ("drainage without coverage", (DRAINAGE, "t%point%coverage >= HALF", "t%point%coverage > 0.0_wp")),
+    ("drainage without pressure", (DRAINAGE, "t%point%pressure > 0.0_wp .and. ", "")),
+    ("a released node stays so", (DRAINAGE, "constraint%released = .false.\n         do c", "do c")),
     ("a boundary that touches the slave gives way too",
      (DRAINAGE, "shared .or. all(in_group(edges(:, e)))", "shared .or. any(in_group(edges(:, e)))")),
-    ("drainage in every stage", (DRAINAGE, " .or. .not. contacts%interfaces(c)%acts) cycle", ") cycle")),
+    ("drainage in every stage", (DRAINAGE, " .or. .not. t%acts) cycle", ") cycle")),
 ]
 
 # Regions of the host: (title, (file below host, text that stands there once, its replacement), ...).
