@@ -21,7 +21,7 @@ contains
       type(state_t), intent(in) :: state
       real(wp) :: p, r(6)
 
-      size = norm(inc%d_strain)
+      size = inc%length
       if (abs(inc%d_pc) <= 0.0_wp) return
       call stress_ratio(par, state%sigma, p, r)
       size = size + abs(inc%d_pc)/bulk_modulus(par, soil_void_ratio(state), p)
