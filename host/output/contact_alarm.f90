@@ -77,7 +77,8 @@ contains
          text = 'a dynamic stage throws the surfaces apart. If that is not meant, move the plate or the mesh so '// &
                 'that they only touch, or find the prestress in a static stage before.'
          if (.not. has_inertia(kind)) text = 'the stage finds the prestress. If none is meant, move the plate or '// &
-            'the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact alone holds.'
+            'the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact '// &
+            'alone holds.'
       end function advice
    end subroutine stage_begins
 

@@ -24,7 +24,7 @@ module mud_consistent
    use mud_sensitivity, only: changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: IDENTITY, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
+   use mud_tensor, only: IDENTITY, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, change_of_left, &
       add_changes_of_faded
    use mud_trial, only: trial_t

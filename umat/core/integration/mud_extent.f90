@@ -8,7 +8,6 @@ module mud_extent
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_state, only: state_t
-   use mud_tensor, only: norm
    implicit none (type, external)
    private
    public :: extent_of

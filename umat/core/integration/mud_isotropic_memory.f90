@@ -11,7 +11,7 @@ module mud_isotropic_memory
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
    use mud_substep, only: MAX_STAGES
-   use mud_tensor, only: LANES, norm, trace
+   use mud_tensor, only: LANES, trace
    use mud_trial, only: trial_t
    implicit none (type, external)
    private

@@ -17,7 +17,7 @@ module mud_substepping
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
    use mud_rates, only: MODE_ORDINARY
-   use mud_tensor, only: ddot, norm, is_finite, all_finite
+   use mud_tensor, only: ddot, is_finite, all_finite
    use mud_trace, only: SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transient, only: find_transient
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known

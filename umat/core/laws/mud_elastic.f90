@@ -97,7 +97,7 @@ contains
       g = shear_modulus(par, e_centre, max(compressed(par, pressure_root(par, e, k), log_ratio), par%p_min))
    end function centre_modulus
 
-   !> The same and its slopes by ln p', e and v [kPa]. Derivative of docs/theory/memory-rules.md section 4.3.
+   !> Modulus at the centre and its slopes by ln p', e and v [kPa]. Derivative of docs/theory/memory-rules.md section 4.3.
    pure subroutine changed_centre_modulus(par, e, k, v, g, slopes)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: e, k, v
