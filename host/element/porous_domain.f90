@@ -14,7 +14,7 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state, &
+             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, keep_element_state, &
              exchange_state
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
@@ -270,6 +270,17 @@ contains
       mixture_density = mixture_density + n*s*domain%fluids%rho_w
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
+
+   !> Strain of displacements of the nodes, or rate of velocities, at a point: rr, zz, tt and engineering shear rz.
+   pure function strain_of(gp, u) result(strain)
+      type(gauss_t), intent(in) :: gp
+      real(wp), intent(in) :: u(2, 6)   !< [m] or [m/s]
+      real(wp) :: strain(4)
+
+      strain = [dot_product(gp%dn(:, 1), u(1, :)), dot_product(gp%dn(:, 2), u(2, :)), &
+                dot_product(gp%n_over_r, u(1, :)), &
+                dot_product(gp%dn(:, 2), u(1, :)) + dot_product(gp%dn(:, 1), u(2, :))]
+   end function strain_of
 
    !> Whether an element is part of the ground.
    pure logical function is_present(state, element)

@@ -10,7 +10,7 @@ module energy_ledger
    use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
    use porous_balance, only: DEVIATOR
-   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, pressures_at, is_present, &
+   use porous_domain, only: domain_t, region_t, state_t, strain_of, mixture_density, pressures_at, is_present, &
                             gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
@@ -269,17 +269,6 @@ contains
          end associate
       end do
    end subroutine add_work_of_element
-
-   !> Strain of displacements of the nodes, or rate of velocities, at a point.
-   pure function strain_of(gp, u) result(strain)
-      type(gauss_t), intent(in) :: gp
-      real(wp), intent(in) :: u(DISPLACEMENTS, 6)   !< [m] or [m/s]
-      real(wp) :: strain(4)
-
-      strain = [dot_product(gp%dn(:, 1), u(1, :)), dot_product(gp%dn(:, 2), u(2, :)), &
-                dot_product(gp%n_over_r, u(1, :)), &
-                dot_product(gp%dn(:, 2), u(1, :)) + dot_product(gp%dn(:, 1), u(2, :))]
-   end function strain_of
 
    !> What seepage dissipates in an element.
    subroutine book_seepage(domain, e, scheme, old, new, ledger)
