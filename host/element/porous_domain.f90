@@ -14,8 +14,8 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, keep_element_state, &
-             exchange_state
+             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
+             keep_element_state, exchange_state
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
    integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.

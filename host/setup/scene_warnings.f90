@@ -163,8 +163,8 @@ contains
       if (any(has_rates(model%stages%kind))) return
       do i = 1, size(scene%regions)
          if (scene%regions(i)%viscosity > 0.0_wp) call add_warning(place_of(scene%regions(i))//'viscosity of the '// &
-            'region '''//trim(scene%regions(i)%group_name)//''' has no effect: every stage is static and has no time; '// &
-            'analysis = ''quasi_static'' of &stage has.', warnings)
+            'region '''//trim(scene%regions(i)%group_name)//''' has no effect: every stage is static and has no '// &
+            'time; analysis = ''quasi_static'' of &stage has.', warnings)
       end do
    end subroutine look_at_regions
 

@@ -104,8 +104,9 @@ def test_what_the_balance_of_a_shaken_column_leaves_open_is_of_second():
     omega = np.pi / 8 * np.sqrt(2.4e4 / 2)
     # A wave of compression under zero lateral strain: modulus 2.4e4 kPa, and 4/3 of the viscosity of shear.
     keys = "damping = {alpha} stiffness_damping = {beta}"
-    for name, alpha, beta, given in (("mass", ALPHA, 0, keys), ("stiffness", 0, BETA, keys), ("both", ALPHA, BETA, keys),
-                                     ("viscosity", 0, BETA, f"viscosity = {0.75 * 2.4e4 * BETA}")):
+    for name, alpha, beta, given in (
+            ("mass", ALPHA, 0, keys), ("stiffness", 0, BETA, keys), ("both", ALPHA, BETA, keys),
+            ("viscosity", 0, BETA, f"viscosity = {0.75 * 2.4e4 * BETA}")):
         text = column(cells=8, damping=given.format(alpha=alpha, beta=beta)) + (
             "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
             f"&initial wave = {SPEED} wave_number = {np.pi / 8} datum = -4 /\n") + stage("swing", 0.6, 1e-3)

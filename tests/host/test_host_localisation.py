@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Shear that localises, as a run tells it: the column of the ledger, the sentence, checkpoints, threads, and the study that
-ends with it. Drucker-Prager's law tells by itself when; bands: verification/host/localisation."""
+"""Shear that localises, as a run tells it: the column of the ledger, the sentence, checkpoints, threads, and the study
+that ends with it. Drucker-Prager's law tells by itself when; bands: verification/host/localisation."""
 import pathlib
 import re
 import subprocess
@@ -16,7 +16,8 @@ import tables  # noqa: E402
 
 SHEAR, POISSON, FRICTION, START, HARDENING, LAST = 2.0e4 / 2.4, 0.2, 0.6, -30.0, 5.0e3, 0.01
 # A sample under 100 kPa on its side is pressed together by 3 %.
-SAMPLE = f"""&scene name = 'sample' geometry = 'plane_strain' fields = 'u' checkpoint_steps = {{every}} threads = {{threads}} /
+SAMPLE = f"""&scene name = 'sample' geometry = 'plane_strain' fields = 'u' checkpoint_steps = {{every}}
+       threads = {{threads}} /
 &mesh r = 0, 1 r_cells = {{cells}} z = 0, 2 z_cells = {{cells}} /
 &umat name = 'soil' library = '{build}/tests/umats/drucker_prager.so' nstatv = 1
       props = 2.0e4, {POISSON}, {FRICTION}, {{dilatancy}}, {START}, {HARDENING}, {LAST}, -15 /
@@ -45,8 +46,8 @@ def sample(name, *words, **keys):
 
 
 def moduli(folder, dilatancy):
-    """Hardening modulus of the law after every step, from the stress that it carries, and the largest at which Rudnicki &
-    Rice have a band at this stress; both over G."""
+    """Hardening modulus of the law after every step, from the stress that it carries, and the largest at which Rudnicki
+    & Rice have a band at this stress; both over G."""
     rows = tables.columns(folder / "histories.csv")
     mean = sum(rows[f"top.s_{c}"] for c in ("rr", "zz", "tt")) / 3
     deviators = [rows[f"top.s_{c}"] - mean for c in ("rr", "zz", "tt")]
@@ -70,20 +71,20 @@ def test_the_ledger_counts_from_the_onset_of_rudnicki_and_rice():
         first = int((share > 0).argmax())
         check(f"dilatancy {dilatancy}: a step before nothing is lost", first > 1 and not share[:first].any()
               and (modulus - critical)[:first][yields[:first]].min() > 0, (first, (modulus - critical)[first - 1]))
-        check(f"dilatancy {dilatancy}: the first step below the critical modulus counts", modulus[first] <= critical[first],
-              (modulus[first], critical[first]))
+        check(f"dilatancy {dilatancy}: the first step below the critical modulus counts",
+              modulus[first] <= critical[first], (modulus[first], critical[first]))
         check(f"dilatancy {dilatancy}: it hardens there", (modulus[first] > 0) == hardens, modulus[first])
-        told = re.findall(r"shear localises.*?(\d+\.?\d*) % of the shear work.*?since (\S+) s.*normal at (\d+) degrees.*"
-                          r"state the cell.*viscosity", done.stderr)
+        told = re.findall(r"shear localises.*?(\d+\.?\d*) % of the shear work.*?since (\S+) s.*normal at (\d+) degrees"
+                          r".*state the cell.*viscosity", done.stderr)
         above = tables.columns(folder / "ledger.csv")["time"][(share > 0.05).argmax()]
-        check(f"dilatancy {dilatancy}: told once, with the time", len(told) == 1 and abs(float(told[0][1]) - above) < 1e-9,
-              done.stderr)
+        check(f"dilatancy {dilatancy}: told once, with the time",
+              len(told) == 1 and abs(float(told[0][1]) - above) < 1e-9, done.stderr)
 
 
 def test_what_does_not_localise_is_not_told():
     done, folder = sample("short", end=0.2)
-    check("a share of zero", not tables.columns(folder / "ledger.csv")["localised"].any() and "localis" not in done.stderr,
-          done.stderr)
+    check("a share of zero", not tables.columns(folder / "ledger.csv")["localised"].any()
+          and "localis" not in done.stderr, done.stderr)
     # Displacements that begin to count anew begin a new account; the sample is let go, which is elastic.
     on = ("&stage name = 'on' analysis = 'static' duration = 0.1 dt = 0.05 tolerance = 1e-10 max_iterations = 60 /\n"
           "&fix group = 'top' field = 'u_z' value = 1e-3 history = 'back' stages = 'on' /\n"

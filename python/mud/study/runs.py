@@ -283,7 +283,8 @@ def _localised(folder):
         return ""
     return (
         f"{100 * share.max():.2g} % of the shear work is done where the tangent of the soil has lost ellipticity: "
-        "displacements there depend on the cell and have no limit: state the cell with them, or give the region a viscosity"
+        "displacements there depend on the cell and have no limit: state the cell with them, or give the region a "
+        "viscosity"
     )
 
 
