@@ -98,7 +98,8 @@ contains
          self%work(p) = self%work(p) + work(p)
       end do
       worst = maxloc(self%work, dim=1)
-      if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, self%normal)
+      if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
+                                              self%normal)
       done%localised = self%localised/max(self%shear, tiny(1.0_wp))
       if (done%localised > TOLD_SHARE .and. .not. self%is_above) then
          self%is_above = .true.

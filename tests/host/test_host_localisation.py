@@ -20,7 +20,7 @@ SAMPLE = f"""&scene name = 'sample' geometry = 'plane_strain' fields = 'u' check
        threads = {{threads}} /
 &mesh r = 0, 1 r_cells = {{cells}} z = 0, 2 z_cells = {{cells}} /
 &umat name = 'soil' library = '{build}/tests/umats/drucker_prager.so' nstatv = 1
-      props = 2.0e4, {POISSON}, {FRICTION}, {{dilatancy}}, {START}, {HARDENING}, {LAST}, -15 /
+      props = 2.0e4, {POISSON}, {FRICTION}, {{dilatancy}}, {START}, {HARDENING}, {LAST}, -15, 0 /
 &region material = 'soil' void_ratio = 0.8 {{region}} /
 &initial stress = 'uniform' sigma = -100, -100, -100 /
 &history name = 'ramp' times = 0, 1 values = 0, 1 /

@@ -61,7 +61,7 @@ def indentation(made):
     rows = []
     for suction in SUCTIONS:
         for viscosity in (0, *VISCOSITIES.get(suction, ())):
-            for fineness in (*MESHES, *((FINEST,) if suction == 3 and not viscosity else ())):
+            for fineness in (*MESHES, *((FINEST,) if suction == 3 else ())):
                 folder = made / "indentation" / f"s{suction}_v{viscosity}_f{fineness}"
                 told = run(folder, INDENTATION, "--fineness", str(fineness), *(
                     word for key, value in (
