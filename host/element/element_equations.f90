@@ -342,7 +342,7 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(nodes_t), intent(in) :: nodes
       type(kinematics_t), intent(inout) :: k
-      real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(3)
+      real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(4)
       integer :: i
 
       slopes = 0.0_wp
@@ -353,10 +353,12 @@ contains
          slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du
          slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du
          hoop = hoop + gp%n_over_r(i)*du(1)
-         rates = rates + [gp%dn(i, 1)*nodes%v(1, i), gp%dn(i, 2)*nodes%v(2, i), gp%n_over_r(i)*nodes%v(1, i)]
+         rates = rates + [gp%dn(i, 1)*nodes%v(1, i), gp%dn(i, 2)*nodes%v(2, i), gp%n_over_r(i)*nodes%v(1, i), &
+                          gp%dn(i, 2)*nodes%v(1, i) + gp%dn(i, 1)*nodes%v(2, i)]
       end do
       k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
-      k%div_v = sum(rates)
+      k%rate = rates
+      k%div_v = sum(rates(:3))
       k%accel = 0.0_wp
       if (scheme%has_inertia) then
          do i = 1, 6

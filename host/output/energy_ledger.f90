@@ -9,8 +9,9 @@ module energy_ledger
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use dashpots, only: work_of_dashpots
    use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, is_present, gravity_on, &
-                            COUPLED, OUTFLOWS
+   use porous_balance, only: DEVIATOR
+   use porous_domain, only: domain_t, region_t, state_t, strain_of, mixture_density, pressures_at, is_present, &
+                            gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t
@@ -32,7 +33,7 @@ module energy_ledger
       real(wp) :: contact = 0.0_wp    !< Work done on contacts: on their penalty, and by friction [kJ].
       real(wp) :: dissipated = 0.0_wp   !< Work that terms dissipated, as sliding does [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
-      real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
+      real(wp) :: damping = 0.0_wp    !< Dissipated by damping and viscosity of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures, less rain: both, air [m3].
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
       real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
@@ -232,21 +233,20 @@ contains
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
       real(wp) :: damping(4), strain(4), p(2), middle(2, 6), s, n, rho, gravity, push(DISPLACEMENTS)
-      real(wp) :: dv(DISPLACEMENTS, 6)
+      real(wp) :: dv(DISPLACEMENTS, 6), v(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
       gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
       node = domain%mesh%t6(:, e)
       dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
+      v = (new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node))/scheme%dt
       associate (carriers => domain%carriers(:domain%n_carriers(e), e))
          middle(:, :size(carriers)) = 0.5_wp*(old%x(AT_P_W:, carriers) + new%x(AT_P_W:, carriers))
       end associate
       do g = 1, domain%rule
          at = (e - 1)*domain%rule + g
          associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
-            strain = [dot_product(gp%dn(:, 1), du(1, :)), dot_product(gp%dn(:, 2), du(2, :)), &
-                      dot_product(gp%n_over_r, du(1, :)), &
-                      dot_product(gp%dn(:, 2), du(1, :)) + dot_product(gp%dn(:, 1), du(2, :))]
+            strain = strain_of(gp, du)
             work%skeleton = work%skeleton &
                + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
             s = 0.5_wp*(old%s(at) + new%s(at))
@@ -255,6 +255,8 @@ contains
             work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
             rho = mixture_density(domain, region, n, s)
             work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
+            if (region%viscosity > 0.0_wp .and. scheme%has_rates) work%damping = work%damping &
+               + gp%weight*region%viscosity*dot_product(matmul(DEVIATOR, strain_of(gp, v)), strain)
             if (.not. scheme%has_inertia) cycle
             push = gp%weight*rho*matmul(du, gp%n)
             work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt

@@ -28,7 +28,7 @@ module ledger_observer
    character(*), parameter :: COLUMNS = 'time,dt,stage,iterations,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,friction,imbalance,'// &
-      'outflow,outflow_air,step_error,'
+      'outflow,outflow_air,localised,step_error,'
    character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
       'measure = ''change'' where weight rests'
    !> Steps in which the work of a load that has just begun exceeds by far that of its first step: it grows with the
@@ -154,7 +154,7 @@ contains
             done%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
             real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
             ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%dissipated, imbalance(ledger), &
-            ledger%outflow, ledger%outflow_air, done%error, indicators
+            ledger%outflow, ledger%outflow_air, done%localised, done%error, indicators
       end associate
       call write_row(table, fault)
       call hand_over(table, fault)

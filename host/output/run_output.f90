@@ -7,6 +7,7 @@ module run_output
    use field_files, only: field_observer_t
    use kinds, only: wp
    use ledger_observer, only: ledger_observer_t
+   use localisation, only: localisation_observer_t
    use output_tables, only: table_observer_t
    use pressure_alarm, only: pressure_alarm_t
    use progress_line, only: progress_observer_t
@@ -18,8 +19,8 @@ module run_output
    private
    public :: list_observers
 contains
-   !> Lists the observers of a run in the order in which they are told. The ledger stands before the tables, which take
-   !> a column from it, the checkpoint behind all that it keeps.
+   !> Lists the observers of a run in the order in which they are told. Localisation stands before the ledger, and this
+   !> before the tables, which take a column from it, the checkpoint behind all that it keeps.
    subroutine list_observers(folder, quiet, verbose, started, observers)
       character(*), intent(in) :: folder   !< Of the results.
       logical, intent(in) :: quiet         !< Errors and warnings only are printed.
@@ -33,6 +34,7 @@ contains
       call observers%add(convergence_alarm_t())
       call observers%add(contact_alarm_t())
       call observers%add(pressure_alarm_t())
+      call observers%add(localisation_observer_t())
       call observers%add(ledger_observer_t())
       call observers%add(water_alarm_t())
       call observers%add(table_observer_t())

@@ -23,6 +23,7 @@ module run_observer
       type(log_t) :: log                   !< What Newton's method did.
       real(wp) :: error = 0.0_wp           !< Estimate of a controlled step's own, share of the change of its field [-].
       logical :: last = .false.            !< The stage ends with it.
+      real(wp) :: localised = 0.0_wp       !< Share of the shear work without ellipticity [-], set by its observer.
       real(wp) :: contact_work = 0.0_wp    !< Work done on contacts so far [kJ], set by the ledger, which stands first.
    end type accepted_step_t
 

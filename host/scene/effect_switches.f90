@@ -44,7 +44,8 @@ contains
       case (OF_CONTACT)
          present = size(scene%contacts) > 0
       case (OF_DAMPING)
-         present = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
+         present = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp .or. &
+                       scene%regions%viscosity > 0.0_wp)
       case (OF_LIMITS)
          present = scene%fields /= WITH_U .and. (any(scene%fixes%limits) .or. any(scene%loads%kind == LOAD_RAIN))
       case (OF_VOID_RATIO)
@@ -112,6 +113,7 @@ contains
       case (OF_DAMPING)
          scene%regions%damping = 0.0_wp
          scene%regions%stiffness_damping = 0.0_wp
+         scene%regions%viscosity = 0.0_wp
       case (OF_LIMITS)
          ! The limit is prescribed, and all rain flows in.
          scene%fixes%limits = .false.

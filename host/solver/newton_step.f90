@@ -351,8 +351,8 @@ contains
       integer :: status, i, f, steps
 
       ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
-      scheme = scheme_t(kind=DYNAMIC, l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, &
-                        c_p=0.0_wp)
+      scheme = scheme_t(kind=DYNAMIC, has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, &
+                        l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
       held = constraint
       held%fixed = constraint%fixed .or. dofs%field > DISPLACEMENTS
       held%target = 0.0_wp

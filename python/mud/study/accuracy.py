@@ -189,11 +189,7 @@ class Study:
             self.state = BUDGET
             self.sentence = "the budget ends before the next run does; the same command with more goes on"
         except _Localised as found:
-            self.state = LOCALISED
-            self.sentence = (
-                f"{found.run.localised}; displacements there depend on the cell and have no limit that finer meshes "
-                "reach: state the cell with the answer, or give the region a viscosity"
-            )
+            self.state, self.sentence = LOCALISED, found.run.localised
 
     def _search(self):
         failure = "" if self.pairs else self._begin()

@@ -274,14 +274,18 @@ def _localised(folder):
     """What a run says of localisation: a sentence, or the share of the shear work in its ledger. Empty: nothing."""
     for line in (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").splitlines():
         if "localis" in line.lower():
-            return line.strip()
+            return line.strip().removeprefix("mud_host: warning: ").removesuffix(".")
     try:
         share = HostRun(folder).ledger.get("localised")
     except InputError:
         return ""
     if share is None or not len(share) or share.dtype.kind != "f" or share.max() <= LOCALISED:
         return ""
-    return f"{100 * share.max():.2g} % of the shear work is done where the soil has lost ellipticity"
+    return (
+        f"{100 * share.max():.2g} % of the shear work is done where the tangent of the soil has lost ellipticity: "
+        "displacements there depend on the cell and have no limit: state the cell with them, or give the region a "
+        "viscosity"
+    )
 
 
 def find_host(host: str = "") -> str:
