@@ -357,11 +357,10 @@ def left(differences, unknown, bounds):
         return unknown * last.size
     ratios = [b.size / max(a.size, 1e-300) for a, b in zip(differences, before)]
     turns = [a.against(b) for a, b in zip(differences, before)]
-    if turns[0] and not any(turns[1:2]):  # it may be small by chance, and shows no order
+    if turns[0]:  # it may be small by chance, and shows no order
         return max(last.size, before[0].size / bounds[0])
-    support = max(bounds[0], *ratios[1:2], 0) if turns[:1] == turns[1:2] else bounds[0]
-    fall = min(ratios[0], support, bounds[1])
-    return last.size * (1 / (fall + 1) if turns[0] else min(1 / max(fall - 1, 1e-3), MOST))
+    support = max(bounds[0], ratios[1]) if turns[1:] and not turns[1] else bounds[0]
+    return last.size * min(1 / max(min(ratios[0], support, bounds[1]) - 1, 1e-3), MOST)
 
 
 def looser(tolerance):
