@@ -31,6 +31,7 @@ UNKNOWN_MESH, UNKNOWN_STEPS = 0.5, 0.75  # of the last difference, where no rati
 USUAL_MESH, USUAL_STEPS = 1.5, 0.8  # orders in the cells and the tolerance, to choose the next pair
 ENOUGH = 0.9  # of what is asked: a pair that is expected to hold so much is worth its runs
 SMALL = 1 / 30  # of what is asked: steps that err less on one mesh are not measured again on the next
+FINEST_OF_FILE = 8  # times the cells of a mesh of a file: mud_host splits triangles thrice
 SOLVE_SHARE = 1 / 3  # of what is asked: from here on Newton's method and the stress integration are tightened
 
 REFUSED = (2, 10, 11, 12, 13)  # exit codes of mud_host: what the scene says cannot be run
@@ -81,6 +82,7 @@ class Study:
         self.scene, self.accuracy, self.state, self.sentence = scene, accuracy, "", ""
         self.goals = goals or np.ravel(scene.list_of("scene")[0].get("goals", [])).tolist()
         self.pairs: list[Pair] = []
+        self.finest = FINEST_OF_FILE if "file" in scene.list_of("mesh")[0] else np.inf
         self.tight = 0  # tenths of the tolerances of Newton and the stress integration, of all runs
         self.solve: dict[str, tuple[float, float]] = {}  # errors by Newton and the stress integration, by answer
         self.expected_solve: dict[str, tuple[float, float]] = {}  # the same where they cannot be measured
@@ -271,7 +273,7 @@ class Study:
             if pair.total <= ENOUGH * self.accuracy:
                 return (pair.fineness, pair.tolerance), None
         tries, dear = [], False
-        for f in (pair.fineness, 2 * pair.fineness):
+        for f in (x for x in (pair.fineness, 2 * pair.fineness) if x <= self.finest):
             for a in pair.tolerance * np.array([HALF_DECADE, 1, 1 / HALF_DECADE, 0.1]):
                 keys = [self.key(*x) for x in ((f / 2, looser(a)), (f / 2, a), (f, a))]
                 missing = [k for k in keys if k not in scene.runs]
@@ -287,7 +289,7 @@ class Study:
             if dear:
                 return None, (BUDGET, "every run that would come nearer ends after the budget")
             failed = [str(x) for x in scene.failed.values()]
-            return None, (FAILS, failed[-1] if failed else "no run that is left comes nearer")
+            return None, (FAILS, failed[-1] if failed else "no run that mud_host can make comes nearer")
         rank = (lambda x: x[1]) if held else lambda x: np.log(x[0] / pair.total) + 0.15 * np.log(max(x[1], 1e-3))
         total, seconds, f, a = min(tries, key=rank)
         scene.say(f"next: fineness {f:g}, step tolerance {a:.2g}, about {seconds:.2g} s, {scene.left:.0f} s left; "
@@ -311,7 +313,7 @@ class Study:
             (cost(f, a), f, a, self.foreseen(pair, f, a))
             for f in pair.fineness * 2.0 ** np.arange(0, 5)
             for a in pair.tolerance * HALF_DECADE ** np.arange(1, -9, -1.0)
-            if a < LOOSEST / 2
+            if a < LOOSEST / 2 and f <= self.finest
         ]
         seconds, f, a, total = min((x for x in tries if x[3] < ENOUGH * accuracy), default=(None,) * 4)
         return (f, a, total, seconds) if seconds else None
@@ -353,11 +355,10 @@ def left(differences, unknown, bounds):
         return unknown * last.size
     ratios = [b.size / max(a.size, 1e-300) for a, b in zip(differences, before)]
     turns = [a.against(b) for a, b in zip(differences, before)]
-    if turns[0] and not any(turns[1:2]):  # it may be small by chance, and shows no order
+    if turns[0]:  # it may be small by chance, and shows no order
         return max(last.size, before[0].size / bounds[0])
-    support = max(bounds[0], *ratios[1:2], 0) if turns[:1] == turns[1:2] else bounds[0]
-    fall = min(ratios[0], support, bounds[1])
-    return last.size * (1 / (fall + 1) if turns[0] else min(1 / max(fall - 1, 1e-3), MOST))
+    support = max(bounds[0], ratios[1]) if turns[1:] and not turns[1] else bounds[0]
+    return last.size * min(1 / max(min(ratios[0], support, bounds[1]) - 1, 1e-3), MOST)
 
 
 def looser(tolerance):

@@ -90,14 +90,16 @@ def accuracy(scene: Scene, args, folder=None) -> int:
 def price(scene: Scene, args) -> int:
     """The study `price`: pairs for 10, 3 and 1 %; what the budget does not reach is expected from those."""
     study, rows, recipes = Study(scene, LEVELS[0], args.goals), [], []
-    for level in LEVELS:
-        study.accuracy = level
+    for study.accuracy in LEVELS:
         if study.state in ("", MET):
             study.search()
-        enough = [p for p in study.pairs if p.total <= level]
+    # A pair holds what it and all finer ones tell.
+    held = [(p, max(q.total for q in study.pairs[i:])) for i, p in enumerate(study.pairs)]
+    for level in LEVELS:
+        enough = [(p, total) for p, total in held if total <= level]
         if enough:
-            best = min(enough, key=lambda p: p.run.seconds)
-            rows.append((level, MET, best.fineness, best.tolerance, best.total, best.run.seconds))
+            best, total = min(enough, key=lambda x: x[0].run.seconds)
+            rows.append((level, MET, best.fineness, best.tolerance, total, best.run.seconds))
             recipes.append(recipe(scene, best.run.key))
         else:
             expected = study.expected(level) if study.pairs else None

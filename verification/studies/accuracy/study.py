@@ -18,7 +18,7 @@ import tables  # noqa: E402
 from mud.study.accuracy import Cost, Study, scene_runs  # noqa: E402
 from mud.study.effects import write_scene  # noqa: E402
 from mud.study.histories import distance  # noqa: E402
-from mud.study.runs import BudgetUsedUp, Failed, Scene, list_of  # noqa: E402
+from mud.study.runs import BudgetUsedUp, Failed, Key, Scene, list_of  # noqa: E402
 from tools import results  # noqa: E402
 
 HEAD = ("scene", "asked", "state", "fineness", "step_tolerance", "answer", "told", "mesh", "steps", "newton", "stress",
@@ -52,11 +52,12 @@ def truth(scene, study, pair, seconds):
     cost = Cost(scene_runs(study.scene))
     for cells, times in FINER:
         fineness, tolerance = pair.fineness*cells, max(pair.tolerance*times, 1e-7)
-        if cost(fineness, tolerance) > seconds:
-            continue
         fine = Scene(study.scene.path, study.scene.folder / "truth", study.scene.host, seconds, quiet=True)
+        key = Key.of(fineness, tolerance, 1 + study.tight, (1 + study.tight)*("mud" in fine.groups))
+        if cost(fineness, tolerance) > seconds and not (fine.folder / key.folder / "run.json").exists():
+            continue
         try:
-            run = fine.run(fineness, tolerance, 1 + study.tight, (1 + study.tight)*("mud" in fine.groups))
+            run = fine.run(key.fineness, key.tolerance, key.newton, key.stress)
             return {n: distance(found, run.histories, n) for n in pair.errors}, f"F {fineness:g}, a {tolerance:.2g}"
         except (Failed, BudgetUsedUp):
             continue
@@ -84,8 +85,8 @@ def row(scene, budget, seconds, folder, host=""):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*")
-    parser.add_argument("--budget", type=float, default=60.0, help="processor time of a study [s]")
-    parser.add_argument("--truth", type=float, default=60.0, help="of a truth [s]")
+    parser.add_argument("--budget", type=float, default=12.0, help="processor time of a study [s]")
+    parser.add_argument("--truth", type=float, default=30.0, help="of a truth [s]")
     parser.add_argument("--work", type=pathlib.Path)
     args = parser.parse_args()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
