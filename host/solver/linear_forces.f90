@@ -9,10 +9,10 @@ module linear_forces
    use generalised_alpha, only: scheme_t
    use porous_domain, only: state_t
    use sparsity_pattern, only: pattern_t, place_of
-   use unknown_fields, only: DISPLACEMENTS
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: linear_forces_t, add_linear_forces, work_of_linear_forces
+   public :: linear_forces_t, add_linear_forces, work_of_linear_forces, water_through_dashpots
 
    type :: linear_forces_t
       logical :: acts = .false.                  !< The forces act in the step under way.
@@ -88,4 +88,28 @@ contains
          end do
       end do
    end function work_of_linear_forces
+
+   !> Water that has left in a step through dashpots that act [m3], in proportion to the changes of the pressures. The row
+   !> of p_w is that of both fluids, but for nodes whose air pressure is prescribed.
+   pure real(wp) function water_through_dashpots(list, dofs, air, change) result(water)
+      type(linear_forces_t), intent(in) :: list(:)
+      type(dofs_t), intent(in) :: dofs
+      logical, intent(in) :: air(:)             !< (nodes) The air pressure is prescribed.
+      real(wp), intent(in) :: change(:, :)      !< (FIELDS, nodes) Changes of the unknowns [m, kPa].
+      integer :: i, k
+
+      water = 0.0_wp
+      do i = 1, size(list)
+         if (.not. list(i)%acts .or. .not. list(i)%by_rates) cycle
+         do k = 1, size(list(i)%row)
+            associate (column => list(i)%column(k), row => list(i)%row(k), value => list(i)%value(k))
+               if (dofs%field(row) == AT_P_W) then
+                  water = water + value*change(dofs%field(column), dofs%node(column))
+               else if (dofs%field(row) == AT_P_C .and. .not. air(dofs%node(row))) then
+                  water = water - value*change(dofs%field(column), dofs%node(column))
+               end if
+            end associate
+         end do
+      end do
+   end function water_through_dashpots
 end module linear_forces
