@@ -7,7 +7,7 @@ module energy_ledger
    use archive, only: archive_t
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
-   use dashpots, only: work_of_dashpots
+   use linear_forces, only: work_of_linear_forces
    use degrees_of_freedom, only: dofs_t
    use porous_balance, only: DEVIATOR
    use porous_domain, only: domain_t, region_t, state_t, strain_of, mixture_density, pressures_at, is_present, &
@@ -26,7 +26,7 @@ module energy_ledger
 
    type :: ledger_t
       real(wp) :: kinetic = 0.0_wp, kinetic_0 = 0.0_wp   !< Now, and at the start [kJ].
-      real(wp) :: skeleton = 0.0_wp   !< Work done on the skeleton: stored and dissipated [kJ].
+      real(wp) :: skeleton = 0.0_wp   !< Work done on the skeleton and on springs: stored and dissipated [kJ].
       real(wp) :: pores = 0.0_wp      !< Work of pore pressures against the change of volume [kJ].
       real(wp) :: gravity = 0.0_wp    !< Work of weight [kJ].
       real(wp) :: loads = 0.0_wp, supports = 0.0_wp      !< Work of loads and of prescribed displacements [kJ].
@@ -84,9 +84,11 @@ contains
                call book_seepage(domain, e, scheme, old, new, ledger)
          end associate
       end do
-      if (allocated(constraint%dashpots)) then
-         work%damping = work%damping + work_of_dashpots(constraint%dashpots, dofs, old, new, change)
-         ledger%supports = ledger%supports + work_of_dashpots(constraint%dashpots, dofs, old, new, held)
+      if (allocated(constraint%linear)) then
+         work%damping = work%damping + work_of_linear_forces(constraint%linear, .true., dofs, old, new, change)
+         work%skeleton = work%skeleton + work_of_linear_forces(constraint%linear, .false., dofs, old, new, change)
+         ledger%supports = ledger%supports + work_of_linear_forces(constraint%linear, .true., dofs, old, new, held) &
+                           + work_of_linear_forces(constraint%linear, .false., dofs, old, new, held)
       end if
       ledger%skeleton = ledger%skeleton + work%skeleton
       ledger%pores = ledger%pores + work%pores

@@ -4,7 +4,7 @@
 !> scheme count here. docs/theory/host.md section 9.2.
 module water_balance
    use archive, only: archive_t
-   use dashpots, only: water_through_dashpots
+   use linear_forces, only: water_through_dashpots
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
    use generalised_alpha, only: scheme_t
@@ -167,8 +167,8 @@ contains
          mean = before + scheme%gamma_1*(after - before)
       end associate
       water%left = water%left + scheme%dt*(mean(1) - mean(2))
-      if (allocated(constraint%dashpots)) water%received = water%received &
-         - water_through_dashpots(constraint%dashpots, dofs, constraint%air, new%x - old%x)
+      if (allocated(constraint%linear)) water%received = water%received &
+         - water_through_dashpots(constraint%linear, dofs, constraint%air, new%x - old%x)
    contains
       !> Mean over the step [m3/s].
       pure real(wp) function inflow_at(i)

@@ -9,7 +9,7 @@ module newton_step
                                  rounding_of_ties
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
                           rounding_in, BY_FORCES, BY_CHANGE
-   use dashpots, only: add_dashpots
+   use linear_forces, only: add_linear_forces
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
@@ -304,7 +304,7 @@ contains
       real(wp), allocatable :: without(:)   !< The residual without contacts.
 
       call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-      if (allocated(constraint%dashpots)) call add_dashpots(constraint%dashpots, dofs, pattern, scheme, old, new, &
+      if (allocated(constraint%linear)) call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, &
                                                             slopes, assembly)
       allocate (without(merge(dofs%n, 0, allocated(touched))))
       if (allocated(touched)) without(:) = assembly%residual
@@ -372,7 +372,7 @@ contains
          return
       end if
       call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
-      if (allocated(held%dashpots)) call add_dashpots(held%dashpots, dofs, pattern, scheme, state, work, .true., &
+      if (allocated(held%linear)) call add_linear_forces(held%linear, dofs, pattern, scheme, state, work, .true., &
                                                      assembly)
       if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
                                                     assembly%residual, assembly%scale, assembly%values)
