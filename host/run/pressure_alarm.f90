@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings of a run whose pore water pressures alternate from node to node (docs/theory/host.md section 3.1), in which
 !> a node of a seepage face lets water in (section 7.7), the pore water is under a tension that no soil holds (section
-!> 9.2), or in which a material made for compression has lost its mean effective stress and has no guard that would have kept it.
+!> 9.2), or in which a material made for compression has lost its mean effective stress and has no guard that would have
+!> kept it.
 module pressure_alarm
    use warnings, only: print_warning
    use kinds, only: wp

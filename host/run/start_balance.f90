@@ -11,7 +11,7 @@ module start_balance
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
    use run_state, only: run_t
-   use scene_types, only: acts_in
+   use scene_types, only: acts_in, load_t, LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_U_Z, AT_P_W
    implicit none (type, external)
    private
@@ -48,8 +48,9 @@ contains
                                      trial%next, trial%assembly, trial%system, touched)) return
          touched = touched - forces
       end if
+      call add_weight_of_water(model, run, forces)
       call let_go_of_held(model, run, forces)
-      call add_carried_loads(model, touched, forces)
+      call add_carried_loads(model, run, touched, forces)
       call look_around(model, run, areas, stress)
       unbalanced = 0.0_wp
       do i = 1, size(forces)
@@ -66,6 +67,52 @@ contains
       balance%there = stress(i)
       balance%x = model%domain%mesh%x(:, model%dofs%node(i))
    end subroutine find_imbalance
+
+   !> Adds the pressures at time 0 that are those of the water at their edges: water that stands there did so before.
+   subroutine add_weight_of_water(model, run, forces)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
+      integer :: i
+
+      do i = 1, size(model%loads)
+         if (is_of_water(model, run, model%loads(i))) forces = forces + load_at_start(model, model%loads(i))
+      end do
+   end subroutine add_weight_of_water
+
+   !> Whether a load of the first stage is at time 0 the pressure of the water at the start, wherever it acts.
+   logical function is_of_water(model, run, load)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(load_t), intent(in) :: load
+      real(wp) :: given, p_w
+      integer :: k, i
+
+      is_of_water = .false.
+      if (load%kind /= LOAD_PRESSURE .or. .not. acts_in(load%stages, model%stages(1)%name)) return
+      associate (x => model%domain%mesh%x, edges => model%domain%mesh%groups(load%group)%edges)
+         do k = 1, size(edges, 2)
+            do i = 1, 2
+               given = factor_at(model, load%amplitude, 0.0_wp)*(load%value &
+                                                                + load%value_slope*(x(2, edges(i, k)) - load%datum))
+               p_w = run%state%x(AT_P_W, edges(i, k))
+               if (abs(given - p_w) > SMALL*max(given, p_w)) return
+               is_of_water = is_of_water .or. p_w > 0.0_wp
+            end do
+         end do
+      end associate
+   end function is_of_water
+
+   !> Forces of a load at time 0 [kN]. (unknowns)
+   function load_at_start(model, load) result(forces)
+      type(model_t), intent(in) :: model
+      type(load_t), intent(in) :: load
+      real(wp) :: forces(model%dofs%n)
+
+      forces = load%value*load%shape
+      if (allocated(load%rise)) forces = forces + load%value_slope*load%rise
+      forces = factor_at(model, load%amplitude, 0.0_wp)*forces
+   end function load_at_start
 
    !> Supports and absorbing boundaries of the first stage hold what they have, rigid bodies stand on their contacts.
    subroutine let_go_of_held(model, run, forces)
@@ -92,8 +139,9 @@ contains
    end subroutine let_go_of_held
 
    !> Adds what contacts press with, and every load at time 0, that leaves less without balance.
-   subroutine add_carried_loads(model, touched, forces)
+   subroutine add_carried_loads(model, run, touched, forces)
       type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
       real(wp), intent(in) :: touched(:)     !< (unknowns) Of contacts [kN].
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
       real(wp) :: load(size(forces)), loads(3)
@@ -102,10 +150,8 @@ contains
       call carry(touched)
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (.not. acts_in(one%stages, model%stages(1)%name)) cycle
-            load = one%value*one%shape
-            if (allocated(one%rise)) load = load + one%value_slope*one%rise
-            call carry(factor_at(model, one%amplitude, 0.0_wp)*load)
+            if (.not. acts_in(one%stages, model%stages(1)%name) .or. is_of_water(model, run, one)) cycle
+            call carry(load_at_start(model, one))
          end associate
       end do
       do i = 1, size(model%plates)
@@ -128,7 +174,7 @@ contains
    end subroutine add_carried_loads
 
    !> For every displacement the area that a stress on one side of its nodes acts on with it, along r and z, from either
-   !> side; and the largest total normal stress around it [kPa].
+   !> side; and the largest normal stress around it, total but for water under pressure [kPa].
    subroutine look_around(model, run, areas, stress)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
@@ -144,7 +190,9 @@ contains
             do g = 1, m%rule
                p = (e - 1)*m%rule + g
                pressures = pressures_at(m, e, g, run%state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
-               total = maxval(abs(run%state%stress(1:3, p) - pressures(1) - (1 - run%state%s(p))*pressures(2)))
+               ! Water under pressure hides what the skeleton lacks: below a lake the total stress is large anywhere.
+               total = maxval(abs(run%state%stress(1:3, p) - min(0.0_wp, pressures(1)) &
+                                  - (1 - run%state%s(p))*pressures(2)))
                do k = 1, 6
                   associate (gp => m%gauss(g, e))
                      part = gp%weight*[max(0.0_wp, gp%dn(k, :)), max(0.0_wp, -gp%dn(k, :))]
