@@ -37,8 +37,9 @@ module element_equations
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
-      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Sums of magnitudes, of volume balances those of strain rates and
-                                                 !< fluxes, of momentum those of weight and of the rounding of inertia.
+      !> Sums of magnitudes: of volume balances those of strain rates and fluxes, in the rows of p_c those of the water
+      !> alone; of momentum those of weight and of the rounding of inertia.
+      real(wp) :: stretch(MAX_DOF) = 0.0_wp
       integer :: source = BY_MATERIAL            !< Source of the response of the points, see carried_slopes.
       integer :: fallback = NO_FALLBACK          !< Kind of replacement of soft tangents, see tangent_fallback.
       integer :: replaced = 0                    !< Number of points whose tangent was replaced.
@@ -234,7 +235,7 @@ contains
       type(pore_t) :: pore
       type(sums_t) :: sums
       type(rows_t) :: rows
-      real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2)
+      real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2, 2)
       integer :: g, i, p, n, n_p, n_fields
 
       n = element_size(domain, element)
@@ -267,8 +268,8 @@ contains
                new%s_rate(p) = pore%s_rate
                rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
                do i = 1, n_p
-                  out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(gp%m(i)) &
-                     + gp%weight*(drift(1)*abs(gp%dm(i, 1)) + drift(2)*abs(gp%dm(i, 2)))
+                  out%stretch([LAST_U + i, LAST_U + n_p + i]) = out%stretch([LAST_U + i, LAST_U + n_p + i]) &
+                     + rate*abs(gp%m(i)) + gp%weight*matmul(abs(gp%dm(i, :)), drift)
                end do
             else
                call solid_response(region, scheme, k(g), old%stress(:, p), skeleton, old%e(p), with_tangent, response, &
@@ -290,9 +291,6 @@ contains
       call residual_of(sums%r, n_fields, n_p, out%r)
       if (out%with_change) call residual_of(change, DISPLACEMENTS, n_p, out%change)
       if (with_tangent) call matrix_of(sums%k, n_fields, n_p, out%k)
-      do i = LAST_U + n_p + 1, n
-         out%stretch(i) = out%stretch(i - n_p)
-      end do
    end subroutine add_points
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.

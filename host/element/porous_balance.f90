@@ -85,7 +85,7 @@ contains
       type(pore_t), intent(out) :: new
       logical, intent(in) :: with_tangent
       real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)   !< The tangent where it is asked for.
-      real(wp), intent(out) :: drift(2)      !< Magnitudes of the parts of both fluxes [m/s].
+      real(wp), intent(out) :: drift(2, 2)   !< Magnitudes of the parts of the fluxes, of both fluids and of water [m/s].
       type(mixture_t) :: mix
 
       call fill_pores(domain, region, scheme, k, skeleton, old, new, mix)
@@ -96,8 +96,9 @@ contains
       if (region%drainage /= COUPLED .and. region%drainage /= UNDRAINED) return
       if (region%drainage == COUPLED) &
          mix%rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
-      call add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
-      if (region%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
+      call add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift(:, 2))
+      drift(:, 1) = drift(:, 2)
+      if (region%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift(:, 1))
       response(PW) = response(PW) - k%source(3)
    end subroutine point_response
 

@@ -8,7 +8,7 @@ module newton_step
    use contact_interfaces, only: add_contacts, contact_forces, follow_turns, contacts_turn, &
                                  rounding_of_ties
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
-                          rounding_in, BY_FORCES, BY_CHANGE
+                          rounding_in, water_of, BY_FORCES, BY_CHANGE
    use linear_forces, only: add_linear_forces
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
@@ -317,6 +317,7 @@ contains
       rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
       call loads_of_water(dofs, constraint%air, rhs)
       assembly%scale = assembly%scale + abs(rhs)
+      if (allocated(assembly%water)) assembly%water = assembly%water + abs(water_of(dofs, constraint%air, rhs))
       if (assembly%with_change) then
          ! What the step changes of loads and contacts, beside that of the elements. An overlap that no solution has
          ! answered yet presses with the penalty alone, which balances nothing: no more counts than the force that is
