@@ -10,6 +10,7 @@ module step_booking
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
    use run_state, only: run_t
+   use springs, only: mean_forces_of_springs
    use water_balance, only: book_water
    implicit none (type, external)
    private
@@ -31,6 +32,8 @@ contains
          contact_force = mean_contact_forces(run%system%contacts, model%dofs, run%state%x, run%next%x)
          call add_elapsed(run%system%seconds(T_CONTACT), t0)
       end if
+      if (allocated(run%constraint%springs)) call mean_forces_of_springs(run%constraint%springs, model%dofs, scheme, &
+                                                                          run%state, run%next, contact_force)
       call book_step(model%domain, model%dofs, scheme, run%constraint, run%system%reaction, contact_force, run%state, &
                      run%next, run%damping_stress, run%ledger)
       call accept_friction(run%system%contacts, run%next%x, dissipated)

@@ -3,6 +3,7 @@
 module prescribed_values
    use kinds, only: wp
    use dashpots, only: dashpots_t
+   use springs, only: spring_t
    use degrees_of_freedom, only: dofs_t
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -25,6 +26,7 @@ module prescribed_values
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
       type(dashpots_t), allocatable :: dashpots(:)   !< Dashpots of terms.
+      type(spring_t), allocatable :: springs(:)      !< Springs of terms.
       real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
       real(wp), allocatable :: mass(:)        !< Masses of rigid bodies [Mg].
       integer, allocatable :: bodies(:, :)    !< (3, bodies that turn) Their unknowns.

@@ -2,6 +2,7 @@
 !> The terms of the program. A new term is one new file and one line in `list_terms`.
 module term_registry
    use absorbing, only: absorbing_t
+   use buffer, only: buffer_t
    use faults, only: fault_t
    use key_table, only: key_table_t
    use model_types, only: model_t, term_t, term_box_t
@@ -21,6 +22,7 @@ contains
       call add(strength_t())
       call add(staging_t())
       call add(absorbing_t())
+      call add(buffer_t())
    contains
       subroutine add(one)
          class(term_t), intent(in) :: one

@@ -10,6 +10,7 @@ FRAME = {"term", "term_registry"}
 # What a file says that knows a term. The names of keys in another group, as those of an old message, count as well.
 WORDS = {
     "absorbing": r"absorb",
+    "buffer": r"\bbuffer",
     "staging": r"stag(ed|ing)_ground|\bstaging|held_up|\babsent\(",
     "strength": r"strength",
 }
