@@ -17,6 +17,7 @@ module ledger_observer
    use model_types, only: model_t
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
+   use springs, only: mean_forces_of_springs
    use run_tables, only: open_table, exchange_table
    use texts, only: short
    use wall_clock, only: clock, add_elapsed
@@ -111,6 +112,8 @@ contains
             contact_force = mean_contact_forces(run%system%contacts, model%dofs, run%state%x, run%next%x)
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
+         if (allocated(run%constraint%springs)) call mean_forces_of_springs(run%constraint%springs, model%dofs, &
+                                                             done%scheme, run%state, run%next, contact_force)
          call book_step(model%domain, model%dofs, done%scheme, run%constraint, run%system%reaction, contact_force, &
                         run%state, run%next, self%damping_stress, ledger)
          call book_creation(done%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &

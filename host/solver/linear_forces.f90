@@ -89,8 +89,8 @@ contains
       end do
    end function work_of_linear_forces
 
-   !> Water that has left in a step through dashpots that act [m3], in proportion to the changes of the pressures. The row
-   !> of p_w is that of both fluids, but for nodes whose air pressure is prescribed.
+   !> Water that has left in a step through dashpots that act [m3], in proportion to the changes of the pressures. The
+   !> row of p_w is that of both fluids, but for nodes whose air pressure is prescribed.
    pure real(wp) function water_through_dashpots(list, dofs, air, change) result(water)
       type(linear_forces_t), intent(in) :: list(:)
       type(dofs_t), intent(in) :: dofs

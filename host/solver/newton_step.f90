@@ -10,6 +10,7 @@ module newton_step
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
                           rounding_in, water_of, BY_FORCES, BY_CHANGE
    use linear_forces, only: add_linear_forces
+   use springs, only: add_springs
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
@@ -304,6 +305,8 @@ contains
       real(wp), allocatable :: without(:)   !< The residual without contacts.
 
       call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+      if (allocated(constraint%springs)) call add_springs(constraint%springs, dofs, pattern, scheme, old, new, slopes, &
+                                                          assembly)
       if (allocated(constraint%linear)) call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, &
                                                             slopes, assembly)
       allocate (without(merge(dofs%n, 0, allocated(touched))))
@@ -373,6 +376,7 @@ contains
          return
       end if
       call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
+      if (allocated(held%springs)) call add_springs(held%springs, dofs, pattern, scheme, state, work, .true., assembly)
       if (allocated(held%linear)) call add_linear_forces(held%linear, dofs, pattern, scheme, state, work, .true., &
                                                      assembly)
       if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &

@@ -2,6 +2,7 @@
 !> The terms of the program. A new term is one new file and one line in `list_terms`.
 module term_registry
    use absorbing, only: absorbing_t
+   use buffer, only: buffer_t
    use contact_drainage, only: contact_drainage_t
    use faults, only: fault_t
    use friction, only: friction_t
@@ -25,6 +26,7 @@ contains
       call add(absorbing_t())
       call add(contact_drainage_t())
       call add(friction_t())
+      call add(buffer_t())
    contains
       subroutine add(one)
          class(term_t), intent(in) :: one

@@ -11,6 +11,7 @@ FRAME = "term_registry"
 # Names of what belongs to a term alone, and a folder of laws that the term stands on: friction those of contact.
 WORDS = {
     "absorbing": (r"absorb", None),
+    "buffer": (r"\bbuffer", None),
     "contact_drainage": (r"contact_drainage|of_drainage|drains|impervious|gives_way", None),
     "friction": (r"friction", "contact"),
     "staging": (r"staging|held_up|staged|mark_absent", None),

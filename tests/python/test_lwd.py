@@ -70,6 +70,13 @@ def test_the_formulas_are_those_of_the_standards():
     check("half sine of 7.07 kN", np.allclose(f, [0, 0, 7.0686, 0, 0], atol=1e-4), f)
 
 
+def test_warnings_that_differ_by_their_time_are_told_once():
+    from mud.lwd.measure import _folded
+
+    told = _folded(["stage drop_1, time 2.01 s: stays at 5.9e-4.", "other", "stage drop_2, time 2.1 s: stays at 1e-3."])
+    check("folded", told == ["stage drop_1, time 2.01 s: stays at 5.9e-4. (and 1 more)", "other"], told)
+
+
 def test_scenes_are_taken_by_the_host_without_a_warning():
     sand, device = Layer("karlsruhe", 0.75), device_of("zorn")
     for name, test in {

@@ -154,9 +154,11 @@ def test_meshes_of_files_are_split():
     done, errors, folder = study("accuracy", text, "ring", "--accuracy", "5e-2")
     runs = {one.name.split("_")[0] for one in folder.glob("F*")}
     check("no mesh is coarser than that of the file", errors and runs <= {"F1", "F2", "F4"}, runs)
-    # mud_host splits its triangles thrice: a finer mesh is no run. What a rough pair told counts as far as finer ones agree.
+    # mud_host splits its triangles thrice: a finer mesh is no run. What a rough pair told counts as far as finer ones
+    # agree.
     done, _, folder = study("price", text, "ring", "--budget", "60", code=3)
-    check("no finer mesh", "no run that mud_host can make" in done.stderr and not list(folder.glob("F16*")), done.stderr)
+    check("no finer mesh", "no run that mud_host can make" in done.stderr and not list(folder.glob("F16*")),
+          done.stderr)
     rows = tables.rows(folder / "price.csv")
     check("3 % is not held by a mesh that a finer one contradicts", float(rows[1]["fineness"]) == 8, rows)
 
