@@ -17,8 +17,6 @@ module boundary_builder
 
    character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
    character(*), parameter :: TURN = '.turn'   !< Ends the group of a rotation.
-   character(*), parameter :: NO_SUBTRACTION = 'initial_flow = ''subtract'' of &scene takes a flow away that a '// &
-      'seepage face or rain has to see; start from water at rest, or let a stage find the flow (''drain'').'
 contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
    !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, the boundary or
@@ -248,15 +246,6 @@ contains
                     'u_z), a history, and not hold = ''yes''.')
          return
       end if
-      if (fix%limits .and. (fix%field /= AT_P_W .or. fix%hold)) then
-         call raise(fault, EXIT_INPUT, place_of(fix)//'kind = ''seepage'' needs field = ''p_w'', and not hold = '// &
-                    '''yes'': its value is the largest p_w, 0 where the face is open to the air.')
-         return
-      end if
-      if (fix%limits .and. model%subtract_flow) then
-         call raise(fault, EXIT_INPUT, place_of(fix)//NO_SUBTRACTION)
-         return
-      end if
       if ((fix%field == AT_P_W .and. .not. model%domain%with_w) .or. &
           (fix%field >= AT_P_C .and. .not. model%domain%with_c)) call raise(fault, EXIT_INPUT, &
          place_of(fix)//'the scene has no field '//WORD_OF(fix%field)//'; see fields in &scene.')
@@ -285,32 +274,8 @@ contains
                (load%kind == LOAD_AIR .and. .not. model%domain%with_c)) then
          call raise(fault, EXIT_INPUT, place_of(load)//'the scene has no field for such an inflow; see '// &
                     'fields in &scene.')
-      else if (load%kind == LOAD_RAIN) then
-         call check_rain(model, load, fault)
       end if
    end subroutine build_load
-
-   !> Rain falls, it is not drawn up; and its pond has a pressure by its weight.
-   subroutine check_rain(model, load, fault)
-      type(model_t), intent(in) :: model
-      type(load_t), intent(in) :: load
-      type(fault_t), intent(inout) :: fault
-      real(wp) :: least
-
-      least = load%value
-      if (load%amplitude > 0) least = min(load%value*minval(model%amplitudes(load%amplitude)%values), &
-                                          load%value*maxval(model%amplitudes(load%amplitude)%values))
-      if (least < 0.0_wp .or. abs(load%value_slope) > 0.0_wp) then
-         call raise(fault, EXIT_INPUT, place_of(load)//'rain has a value times its history of 0 or more, and no '// &
-                    'value_slope; here it becomes '//short(least)//' m/s. For evaporation give a kind = ''water'' '// &
-                    'with a negative value, which acts whatever the suction.')
-      else if (load%ponding > 0.0_wp .and. .not. model%domain%gravity > 0.0_wp) then
-         call raise(fault, EXIT_INPUT, place_of(load)//'ponding = '//short(load%ponding)//' m: without gravity in '// &
-                    '&scene the pond has no pressure; set gravity, or leave ponding out.')
-      else if (model%subtract_flow) then
-         call raise(fault, EXIT_INPUT, place_of(load)//NO_SUBTRACTION)
-      end if
-   end subroutine check_rain
 
    subroutine build_contact(model, contact, fault)
       type(model_t), intent(in) :: model

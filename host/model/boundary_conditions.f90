@@ -5,15 +5,15 @@ module boundary_conditions
    use degrees_of_freedom, only: dofs_t, unknowns_of_body
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    use limited_pressures, only: begin_sides
-   use model_types, only: model_t, factor_at, gravity_at
+   use model_types, only: model_t, factor_at
    use porous_domain, only: state_t
    use prescribed_values, only: constraint_t, is_released
-   use scene_types, only: acts_in, stage_t, fix_t, LOAD_RAIN, PRESCRIBED_P_A
+   use scene_types, only: acts_in, stage_t, fix_t, PRESCRIBED_P_A
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: new_constraint, constrain_step, complete_constraint, follow_accelerations, starting_accelerations, &
-             prescribing_fixes, forces_of_supports
+   public :: new_constraint, constrain_step, complete_constraint, acts, value_of, follow_accelerations, &
+             starting_accelerations, prescribing_fixes, forces_of_supports
 
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
 contains
@@ -64,16 +64,6 @@ contains
       constraint%fixed = .false.
       constraint%air = .false.
       constraint%limited = .false.
-      ! Where drained regions begin pressures are theirs.
-      do k = 1, size(model%domain%open_nodes)
-         node = model%domain%open_nodes(k)
-         do i = AT_P_W, AT_P_C
-            at = dofs%of(i, node)
-            if (at == 0) cycle
-            constraint%fixed(at) = .true.
-            constraint%target(at) = model%domain%given(i - DISPLACEMENTS, node)
-         end do
-      end do
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
             if (.not. acts(fix, stage, time) .or. fix%limits) cycle
@@ -97,7 +87,6 @@ contains
             end do
          end associate
       end do
-      if (stage%kind /= STATIC) call limit_pressures(model, stage, dofs, time, constraint)
    end subroutine constrain_step
 
    !> What follows from the prescribed values of supports and terms. Pressures with a limit begin on that side of it on
@@ -141,57 +130,6 @@ contains
 
       value = (fix%value + fix%value_slope*(z - fix%datum))*factor
    end function value_of
-
-   !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest, whose group
-   !> has the run-off. What another &fix gives has no limit. The air of such a face is that outside.
-   !> docs/theory/host.md section 7.7.
-   subroutine limit_pressures(model, stage, dofs, time, constraint)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: time   !< At the end of the step [s].
-      type(constraint_t), intent(inout) :: constraint
-      integer :: i, k
-
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-            if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
-            do k = 1, size(nodes)
-               ! The water outside, where it stands, else the air.
-               if (.not. is_released(constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, value_of(fix, &
-                  model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
-            end do
-         end associate
-      end do
-      do i = 1, size(model%loads)
-         associate (load => model%loads(i), nodes => model%domain%mesh%groups(model%loads(i)%group)%nodes)
-            if (load%kind /= LOAD_RAIN .or. .not. acts_in(load%stages, stage%name)) cycle
-            do k = 1, size(nodes)
-               call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*load%ponding, load%group)
-            end do
-         end associate
-      end do
-   contains
-      subroutine limit(node, value, group)
-         integer, intent(in) :: node, group
-         real(wp), intent(in) :: value   !< [kPa]
-
-         associate (at => dofs%of(AT_P_W, node))
-            if (at == 0) return
-            if (constraint%fixed(at)) return
-            if (constraint%limited(at) .and. constraint%target(at) <= value) return
-            constraint%limited(at) = .true.
-            constraint%target(at) = value
-            constraint%limited_by(at) = group
-         end associate
-         associate (at => dofs%of(AT_P_C, node))
-            if (at == 0 .or. constraint%air(node)) return
-            if (constraint%fixed(at)) return
-         end associate
-         constraint%air(node) = .true.
-         constraint%air_target(node) = 0.0_wp
-      end subroutine limit
-   end subroutine limit_pressures
 
    !> Displacements at the end of a step whose accelerations are prescribed: those that the scheme gives them, so that
    !> inertia is exact and free of the ringing that a prescribed displacement has. Accelerations of the scheme belong to
@@ -259,6 +197,7 @@ contains
           *factor_at(model, fix%amplitude, time + (0.5_wp - scheme%gamma)*scheme%dt)
    end function acceleration_at
 
+   !> Whether a &fix acts in a step.
    pure logical function acts(fix, stage, time)
       type(fix_t), intent(in) :: fix
       type(stage_t), intent(in) :: stage

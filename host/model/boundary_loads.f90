@@ -12,7 +12,7 @@ module boundary_loads
    use degrees_of_freedom, only: dofs_t, unknowns_of_body, tie, tie_pairs
    implicit none (type, external)
    private
-   public :: shape_loads, ties_of, load_at, rain_at, plate_loads
+   public :: shape_loads, ties_of, load_at, plate_loads
 contains
    !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
    !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
@@ -166,24 +166,6 @@ contains
          end associate
       end do
    end function load_at
-
-   !> The rain of a stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
-   pure function rain_at(model, stage, dofs, time) result(rain)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: time   !< [s]
-      real(wp) :: rain(dofs%n)
-      integer :: i
-
-      rain = 0.0_wp
-      do i = 1, size(model%loads)
-         associate (one => model%loads(i))
-            if (one%kind == LOAD_RAIN .and. acts_in(one%stages, stage%name)) &
-               rain = rain + factor_at(model, one%amplitude, time)*one%value*one%shape
-         end associate
-      end do
-   end function rain_at
 
    !> Forces on a plate along r and upwards, its weight among them [kN], and the moment from r to z [kN m].
    !> docs/theory/host.md section 7.3.

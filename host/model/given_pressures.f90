@@ -1,20 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> Pressures at the start, and where regions differ in what their fluids do: nodes of undrained elements, the pressures
-!> that stay as they are given, groups of supports, inflows and initial values that lie where nothing could have them.
+!> Pressures at the start, and where regions differ in what their fluids do: nodes of undrained elements, and groups of
+!> supports, inflows and initial values that lie where nothing could have them.
 !> docs/theory/host.md section 3.5.
 module given_pressures
    use kinds, only: wp
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
    use model_types, only: model_t
-   use porous_domain, only: domain_t, COUPLED, DRAINED, UNDRAINED, DRY
+   use porous_domain, only: domain_t, COUPLED, UNDRAINED, DRY
    use scene_types, only: place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, initial_t
    use texts, only: whole
-   use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C, DISPLACEMENTS
+   use unknown_fields, only: FIELD_NAMES, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: add_centers, give_pressures, pressures_at_start, check_places, nodes_with_flow, edges_with_flow
-   public :: follow_undrained, water, suction
+   public :: add_centers, pressures_at_start, check_places, nodes_with_flow, edges_with_flow
+   public :: water, suction
 contains
    !> A node in the middle of every undrained element: there its pressures are. docs/theory/host.md section 3.5. The
    !> regions must be known; coordinates: mean of the vertices.
@@ -38,35 +38,6 @@ contains
       end do
       call move_alloc(x, domain%mesh%x)
    end subroutine add_centers
-
-   !> Pressures that are no unknowns, and the nodes where an unknown meets them. docs/theory/host.md section 3.5. Sets
-   !> `given` [kPa] and open_nodes of the domain.
-   subroutine give_pressures(model)
-      type(model_t), intent(inout) :: model
-      logical, dimension(size(model%domain%mesh%x, 2)) :: flows, drains
-      integer :: e, i
-
-      associate (domain => model%domain)
-         if (.not. any(domain%regions%drainage == DRAINED .or. domain%regions%drainage == UNDRAINED)) return
-         domain%given = pressures_at_start(model)
-         flows = nodes_with_flow(domain)
-         drains = .false.
-         do e = 1, size(domain%region_of)
-            associate (nodes => domain%mesh%t6(:, e))
-               ! The middle of a side lies between the ends where pressures are linear.
-               if (domain%n_p == 3) domain%given(:, nodes(4:6)) = &
-                  0.5_wp*(domain%given(:, nodes(1:3)) + domain%given(:, nodes([2, 3, 1])))
-               if (domain%regions(domain%region_of(e))%drainage == DRAINED) drains(nodes(:domain%n_p)) = .true.
-            end associate
-         end do
-         do e = 1, size(domain%region_of)
-            ! The mean of a quadratic field over a triangle is that of the middles of its sides.
-            if (domain%center(e) > 0) &
-               domain%given(:, domain%center(e)) = sum(domain%given(:, domain%mesh%t6(4:6, e)), dim=2)/3
-         end do
-         domain%open_nodes = pack([(i, i=1, size(drains))], drains .and. flows)
-      end associate
-   end subroutine give_pressures
 
    !> p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. docs/theory/host.md
    !> section 8.
@@ -180,37 +151,4 @@ contains
       end associate
    end subroutine check_places
 
-   !> Pressures of nodes that lie in undrained elements alone, for histories and fields: the mean of what these have
-   !> there. No element looks at them. docs/theory/host.md section 3.5.
-   subroutine follow_undrained(domain, of, x)
-      type(domain_t), intent(in) :: domain
-      integer, intent(in) :: of(:, :)           !< (FIELDS, nodes) Unknowns, 0: none.
-      real(wp), intent(inout) :: x(:, :)        !< (FIELDS, nodes) [m, kPa]
-      real(wp) :: total(2, size(x, 2))
-      logical :: given(size(x, 2))
-      integer :: users(size(x, 2)), e, k
-
-      if (.not. any(domain%center > 0)) return
-      total = 0.0_wp
-      users = 0
-      given = .false.
-      do e = 1, size(domain%center)
-         associate (center => domain%center(e))
-            ! An unknown, or a given value, stays.
-            if (domain%regions(domain%region_of(e))%drainage == DRAINED) given(domain%mesh%t6(:, e)) = .true.
-            if (center == 0) cycle
-            do k = 1, domain%n_p
-               associate (node => domain%mesh%t6(k, e))
-                  total(:, node) = total(:, node) + x(AT_P_W:AT_P_C, center) + domain%given(:, node) &
-                                   - domain%given(:, center)
-                  users(node) = users(node) + 1
-               end associate
-            end do
-         end associate
-      end do
-      do k = 1, size(x, 2)
-         if (users(k) == 0 .or. given(k) .or. of(AT_P_W, k) > 0) cycle
-         x(AT_P_W:AT_P_C, k) = total(:, k)/users(k)
-      end do
-   end subroutine follow_undrained
 end module given_pressures

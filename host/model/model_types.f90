@@ -48,7 +48,7 @@ module model_types
    contains
       procedure(declare_i), deferred, nopass :: declare
       procedure(build_i), deferred :: build
-      procedure :: group, begin_run, begin_stage, before_step, prescribe, accept, exchange, remark
+      procedure :: group, begin_run, begin_stage, before_step, prescribe, complete, accept, exchange, remark
    end type term_t
 
    !> An element of a list of terms.
@@ -148,6 +148,16 @@ contains
       associate (u1 => self, u2 => model, u3 => time, u4 => solution)
       end associate
    end subroutine prescribe
+
+   !> After a step that Newton's method has solved: values of solution%next that follow from its unknowns.
+   subroutine complete(self, model, solution)
+      class(term_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(solution_t), intent(inout) :: solution
+
+      associate (u1 => self, u2 => model, u3 => solution)
+      end associate
+   end subroutine complete
 
    !> After an accepted step, booked and not yet taken over. Energies [kJ] of the step grow by what the term dissipated.
    subroutine accept(self, solution, dissipated)

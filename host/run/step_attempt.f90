@@ -5,11 +5,10 @@ module step_attempt
    use kinds, only: wp
    use faults, only: fault_t
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
-   use boundary_loads, only: load_at, rain_at
+   use boundary_loads, only: load_at
    use convergence, only: control_t, log_t
    use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
-   use given_pressures, only: follow_undrained
    use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
@@ -69,7 +68,7 @@ contains
    end subroutine begin_terms
 
    !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
-   !> docs/theory/host.md section 4.4. Faults: that of find_impervious_nodes; that of explain_failure where no cut is
+   !> docs/theory/host.md section 4.4. Faults: those of set_step; that of explain_failure where no cut is
    !> left, the linear solver failed, or the matrix is singular by no soft point.
    subroutine try_step(model, stage, control, dt, run, log, accepted, fault)
       type(model_t), intent(inout) :: model   !< The tolerance of its laws follows Newton's method.
@@ -84,6 +83,7 @@ contains
       real(wp), allocatable :: a0(:, :)
       real(wp) :: share
       logical :: lost
+      integer :: i
 
       accepted = .false.
       if (dt < shortest_step(stage, run)) then
@@ -111,7 +111,9 @@ contains
       if (accepted) then
          call judge_step(model, stage, dt, log%balanced, run, accepted)
          if (.not. accepted) run%assembly%slopes%known = .false.
-         call follow_undrained(model%domain, model%dofs%of, run%next%x)
+         do i = 1, size(run%terms)
+            call run%terms(i)%term%complete(model, run%solution_t)
+         end do
          return
       end if
       associate (at => run%at)
@@ -169,8 +171,6 @@ contains
       associate (c => run%constraint, until => run%state%time + dt)
          c%load_0 = load_at(model, stage, model%dofs, run%state%time)
          c%load_1 = load_at(model, stage, model%dofs, until)
-         c%rain_0 = rain_at(model, stage, model%dofs, run%state%time)
-         c%rain_1 = rain_at(model, stage, model%dofs, until)
          do i = 1, size(run%terms)
             if (fault%code == 0) call run%terms(i)%term%before_step(model, dt, run%solution_t, fault)
          end do

@@ -123,7 +123,6 @@ module scene_types
       integer :: group = 0, amplitude = 0
       integer :: kind = 0                            !< LOAD_...
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
-      real(wp) :: ponding = 0.0_wp                   !< Depth of water that stays on the surface, of rain [m].
       logical :: turns = .false.                     !< A moment on a plate.
       character(LENGTH), allocatable :: stages(:)
       real(wp), allocatable :: shape(:)              !< Load vector of a unit value.

@@ -9,7 +9,7 @@ module model_builder
    use boundary_loads, only: shape_loads, ties_of
    use degrees_of_freedom, only: number_unknowns
    use free_bodies, only: check_bodies
-   use given_pressures, only: add_centers, give_pressures, check_places
+   use given_pressures, only: add_centers, check_places
    use mesh_builder, only: build_mesh
    use mesh_look, only: check_carried
    use model_types, only: model_t
@@ -52,7 +52,6 @@ contains
       if (fault%code == 0) call check_ground(model, fault)
       if (fault%code == 0) call check_sides(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)
-      if (fault%code == 0) call give_pressures(model)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       do i = 1, size(model%points)
          if (fault%code == 0) call find_point(model%domain, model%points(i), fault)

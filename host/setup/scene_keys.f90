@@ -470,8 +470,6 @@ contains
                     REQUIRED)
       call k%number('value_slope', load%value_slope, -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]')
       call k%number('datum', load%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
-      call k%number('ponding', load%ponding, ZERO, 1000*ONE, &
-                    'rain: depth of water that the surface holds before the rest runs off [m]', 'kind=rain')
       call k%text('history', load%amplitude_name, 'factor on the value', refers='history')
       call k%texts('stages', load%stages, STAGES)
       scene%loads = [scene%loads, load]

@@ -4,10 +4,12 @@ module term_registry
    use absorbing, only: absorbing_t
    use buffer, only: buffer_t
    use contact_drainage, only: contact_drainage_t
+   use drained_regions, only: drained_regions_t
    use faults, only: fault_t
    use friction, only: friction_t
    use key_table, only: key_table_t
    use model_types, only: model_t, term_t, term_box_t
+   use run_off, only: run_off_t
    use staging, only: staging_t
    use strength, only: strength_t
    implicit none (type, external)
@@ -25,6 +27,8 @@ contains
       call add(staging_t())
       call add(absorbing_t())
       call add(contact_drainage_t())
+      call add(drained_regions_t())
+      call add(run_off_t())
       call add(friction_t())
       call add(buffer_t())
    contains

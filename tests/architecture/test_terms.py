@@ -13,7 +13,9 @@ WORDS = {
     "absorbing": (r"absorb", None),
     "buffer": (r"\bbuffer", None),
     "contact_drainage": (r"contact_drainage|of_drainage|drains|impervious|gives_way", None),
+    "drained_regions": (r"drained_regions|give_pressures|follow_undrained|open_nodes", None),
     "friction": (r"friction", "contact"),
+    "run_off": (r"run_off\b|limit_pressures|ponding|rain_at|check_rain", None),
     "staging": (r"staging|held_up|staged|mark_absent", None),
     "strength": (r"strength", None),
 }

@@ -296,7 +296,7 @@ CONTACT = [
 # Regions of the host: (title, (file below host, text that stands there once, its replacement), ...).
 PLACES, GIVEN, START = "element/porous_domain.f90", "model/given_pressures.f90", "model/initial_conditions.f90"
 UNKNOWNS, BUILDER = "element/degrees_of_freedom.f90", "model/region_builder.f90"
-SUPPORTS, ABSORBING = "model/boundary_conditions.f90", "terms/absorbing.f90"
+DRAINED, ABSORBING = "terms/drained_regions.f90", "terms/absorbing.f90"
 
 REGIONS = [
     ("all nodes have pressures", (UNKNOWNS, "has(AT_P_W, carriers) = region%with_w", "has(AT_P_W, domain%mesh%t6(:, e)) = domain%with_w")),
@@ -316,11 +316,11 @@ REGIONS = [
     ("drained soil has no pressure",
      (PLACES, "p = matmul(domain%given(:, domain%mesh%t6(:, element)), domain%gauss(point, element)%n)\n      case (UNDRAINED)",
       "p = 0.0_wp\n      case (UNDRAINED)")),
-    ("nothing flows into drained soil", (GIVEN, "i=1, size(drains))], drains .and. flows)", "i=1, size(drains))], drains .and. .not. flows)")),
+    ("nothing flows into drained soil", (DRAINED, "i=1, size(drains))], drains .and. flows)", "i=1, size(drains))], drains .and. .not. flows)")),
     ("water flows into undrained soil too",
-     (GIVEN, "drainage == DRAINED) drains(nodes", "drainage /= COUPLED) drains(nodes")),
+     (DRAINED, "drainage == DRAINED) drains(nodes", "drainage >= DRAINED) drains(nodes")),
     ("the interface of drained soil has no pressure",
-     (SUPPORTS, "constraint%target(at) = model%domain%given(i - DISPLACEMENTS, node)", "constraint%target(at) = 0.0_wp")),
+     (DRAINED, "c%target(at) = domain%given(i - DISPLACEMENTS, domain%open_nodes(k))", "c%target(at) = 0.0_wp")),
     ("dry soil has the water of the scene",
      (BUILDER, "region%with_w = domain%with_w .and. region%drainage /= DRY", "region%with_w = domain%with_w")),
     ("dry soil has the weight of wet soil",
@@ -338,7 +338,7 @@ REGIONS = [
     ("a support of a pressure that nothing has is accepted",
      (GIVEN, "if (any(flows(domain%mesh%groups(fix%group)%nodes))) cycle", "if (any(flows)) cycle")),
     ("water that flows in nowhere is accepted", (GIVEN, "if (any(edges_with_flow(domain, load%group))) cycle", "if (any(flows)) cycle")),
-    ("nodes of undrained soil show the start", (GIVEN, "x(AT_P_W:AT_P_C, k) = total(:, k)/users(k)", "x(AT_P_W:AT_P_C, k) = domain%given(:, k)")),
+    ("nodes of undrained soil show the start", (DRAINED, "x(AT_P_W:AT_P_C, k) = total(:, k)/users(k)", "x(AT_P_W:AT_P_C, k) = domain%given(:, k)")),
     ("a boundary of drained soil absorbs waves of undrained soil",
      (ABSORBING, "with_pores = region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)",
       "with_pores = region%with_w")),

@@ -1,0 +1,139 @@
+! SPDX-License-Identifier: MIT
+!> Regions whose pressures are given, or in which every element has pressures of its own, drainage of &region: what
+!> their pressures begin with, the nodes where an unknown meets them, and what is shown there.
+!> docs/theory/host.md section 3.5.
+module drained_regions
+   use kinds, only: wp
+   use faults, only: fault_t
+   use given_pressures, only: pressures_at_start, nodes_with_flow
+   use key_table, only: key_table_t
+   use model_types, only: model_t, term_t
+   use porous_domain, only: domain_t, DRAINED, UNDRAINED
+   use solution, only: solution_t
+   use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: drained_regions_t
+
+   type, extends(term_t) :: drained_regions_t
+   contains
+      procedure, nopass :: declare
+      procedure :: build, prescribe, complete
+   end type drained_regions_t
+contains
+   !> Its key is one of regions, which are built before.
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+
+      associate (unused => k)
+      end associate
+   end subroutine declare
+
+   !> Raises no fault.
+   subroutine build(self, model, there, fault)
+      class(drained_regions_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+
+      associate (u1 => self, u2 => fault)
+      end associate
+      there = any(model%domain%regions%drainage == DRAINED .or. model%domain%regions%drainage == UNDRAINED)
+      if (there) call give_pressures(model)
+   end subroutine build
+
+   !> Pressures that are no unknowns, and the nodes where an unknown meets them. docs/theory/host.md section 3.5. Sets
+   !> `given` [kPa] and open_nodes of the domain.
+   subroutine give_pressures(model)
+      type(model_t), intent(inout) :: model
+      logical, dimension(size(model%domain%mesh%x, 2)) :: flows, drains
+      integer :: e, i
+
+      associate (domain => model%domain)
+         domain%given = pressures_at_start(model)
+         flows = nodes_with_flow(domain)
+         drains = .false.
+         do e = 1, size(domain%region_of)
+            associate (nodes => domain%mesh%t6(:, e))
+               ! The middle of a side lies between the ends where pressures are linear.
+               if (domain%n_p == 3) domain%given(:, nodes(4:6)) = &
+                  0.5_wp*(domain%given(:, nodes(1:3)) + domain%given(:, nodes([2, 3, 1])))
+               if (domain%regions(domain%region_of(e))%drainage == DRAINED) drains(nodes(:domain%n_p)) = .true.
+            end associate
+         end do
+         do e = 1, size(domain%region_of)
+            ! The mean of a quadratic field over a triangle is that of the middles of its sides.
+            if (domain%center(e) > 0) &
+               domain%given(:, domain%center(e)) = sum(domain%given(:, domain%mesh%t6(4:6, e)), dim=2)/3
+         end do
+         domain%open_nodes = pack([(i, i=1, size(drains))], drains .and. flows)
+      end associate
+   end subroutine give_pressures
+
+   !> Where drained regions begin pressures are theirs, but for those of a &fix.
+   subroutine prescribe(self, model, time, solution)
+      class(drained_regions_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time
+      type(solution_t), intent(inout) :: solution
+      integer :: i, k, at
+
+      associate (u1 => self, u2 => time)
+      end associate
+      associate (domain => model%domain, c => solution%constraint)
+         do k = 1, size(domain%open_nodes)
+            do i = AT_P_W, AT_P_C
+               at = model%dofs%of(i, domain%open_nodes(k))
+               if (at == 0) cycle
+               if (c%fixed(at)) cycle
+               c%fixed(at) = .true.
+               c%target(at) = domain%given(i - DISPLACEMENTS, domain%open_nodes(k))
+            end do
+         end do
+      end associate
+   end subroutine prescribe
+
+   subroutine complete(self, model, solution)
+      class(drained_regions_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(solution_t), intent(inout) :: solution
+
+      associate (unused => self)
+      end associate
+      call follow_undrained(model%domain, model%dofs%of, solution%next%x)
+   end subroutine complete
+
+   !> Pressures of nodes that lie in undrained elements alone, for histories and fields: the mean of what these have
+   !> there. No element looks at them. docs/theory/host.md section 3.5.
+   subroutine follow_undrained(domain, of, x)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: of(:, :)           !< (FIELDS, nodes) Unknowns, 0: none.
+      real(wp), intent(inout) :: x(:, :)        !< (FIELDS, nodes) [m, kPa]
+      real(wp) :: total(2, size(x, 2))
+      logical :: given(size(x, 2))
+      integer :: users(size(x, 2)), e, k
+
+      if (.not. any(domain%center > 0)) return
+      total = 0.0_wp
+      users = 0
+      given = .false.
+      do e = 1, size(domain%center)
+         associate (center => domain%center(e))
+            ! An unknown, or a given value, stays.
+            if (domain%regions(domain%region_of(e))%drainage == DRAINED) given(domain%mesh%t6(:, e)) = .true.
+            if (center == 0) cycle
+            do k = 1, domain%n_p
+               associate (node => domain%mesh%t6(k, e))
+                  total(:, node) = total(:, node) + x(AT_P_W:AT_P_C, center) + domain%given(:, node) &
+                                   - domain%given(:, center)
+                  users(node) = users(node) + 1
+               end associate
+            end do
+         end associate
+      end do
+      do k = 1, size(x, 2)
+         if (users(k) == 0 .or. given(k) .or. of(AT_P_W, k) > 0) cycle
+         x(AT_P_W:AT_P_C, k) = total(:, k)/users(k)
+      end do
+   end subroutine follow_undrained
+end module drained_regions

@@ -1,0 +1,204 @@
+! SPDX-License-Identifier: MIT
+!> Water that runs off: seepage faces and rain, where a water pressure has a limit. Which side of it acts is decided
+!> within Newton's method (limited_pressures). docs/theory/host.md section 7.7.
+module run_off
+   use kinds, only: wp
+   use boundary_conditions, only: acts, value_of
+   use degrees_of_freedom, only: dofs_t
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use generalised_alpha, only: has_rates
+   use key_table, only: key_table_t
+   use model_types, only: model_t, term_t, factor_at, gravity_at
+   use namelists, only: group_t
+   use prescribed_values, only: constraint_t, is_released
+   use scene_types, only: acts_in, groups_named, load_t, place_of, stage_t, LOAD_RAIN
+   use solution, only: solution_t
+   use texts, only: short
+   use unknown_fields, only: AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: run_off_t
+
+   character(*), parameter :: IN_GROUP = 'load'
+   character(*), parameter :: NO_SUBTRACTION = 'initial_flow = ''subtract'' of &scene takes a flow away that a '// &
+      'seepage face or rain has to see; start from water at rest, or let a stage find the flow (''drain'').'
+
+   type, extends(term_t) :: run_off_t
+      real(wp), allocatable :: ponding(:)   !< (loads) Depth of water that stays on the surface, of rain [m].
+   contains
+      procedure, nopass :: declare
+      procedure :: build, before_step, prescribe
+   end type run_off_t
+contains
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+      real(wp) :: ponding
+
+      ponding = 0.0_wp
+      if (k%group%name == IN_GROUP) call take(k, ponding)
+   end subroutine declare
+
+   subroutine take(k, ponding)
+      type(key_table_t), intent(inout) :: k
+      real(wp), intent(inout) :: ponding
+
+      call k%number('ponding', ponding, 0.0_wp, 1000.0_wp, &
+                    'rain: depth of water that the surface holds before the rest runs off [m]', 'kind=rain')
+   end subroutine take
+
+   !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
+   !> pond without weight.
+   subroutine build(self, model, there, fault)
+      class(run_off_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t) :: table
+      integer :: i, k
+
+      there = any(model%fixes%limits) .or. any(model%loads%kind == LOAD_RAIN)
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (.not. fix%limits .or. fault%code /= 0) cycle
+            if (fix%field /= AT_P_W .or. fix%hold) then
+               call raise(fault, EXIT_INPUT, place_of(fix)//'kind = ''seepage'' needs field = ''p_w'', and not '// &
+                          'hold = ''yes'': its value is the largest p_w, 0 where the face is open to the air.')
+            else if (model%subtract_flow) then
+               call raise(fault, EXIT_INPUT, place_of(fix)//NO_SUBTRACTION)
+            end if
+         end associate
+      end do
+      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      allocate (self%ponding(size(model%loads)), source=0.0_wp)
+      do i = 1, size(model%loads)
+         associate (load => model%loads(i))
+            if (load%kind /= LOAD_RAIN .or. fault%code /= 0) cycle
+            k = findloc(groups%file == load%file .and. groups%line == load%line, .true., dim=1)
+            table%group = groups(k)
+            call take(table, self%ponding(i))
+            call check_rain(model, load, self%ponding(i), fault)
+         end associate
+      end do
+   end subroutine build
+
+   !> Rain falls, it is not drawn up; and its pond has a pressure by its weight.
+   subroutine check_rain(model, load, ponding, fault)
+      type(model_t), intent(in) :: model
+      type(load_t), intent(in) :: load
+      real(wp), intent(in) :: ponding   !< Depth of water that stays on the surface [m].
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: least
+
+      least = load%value
+      if (load%amplitude > 0) least = min(load%value*minval(model%amplitudes(load%amplitude)%values), &
+                                          load%value*maxval(model%amplitudes(load%amplitude)%values))
+      if (least < 0.0_wp .or. abs(load%value_slope) > 0.0_wp) then
+         call raise(fault, EXIT_INPUT, place_of(load)//'rain has a value times its history of 0 or more, and no '// &
+                    'value_slope; here it becomes '//short(least)//' m/s. For evaporation give a kind = ''water'' '// &
+                    'with a negative value, which acts whatever the suction.')
+      else if (ponding > 0.0_wp .and. .not. model%domain%gravity > 0.0_wp) then
+         call raise(fault, EXIT_INPUT, place_of(load)//'ponding = '//short(ponding)//' m: without gravity in '// &
+                    '&scene the pond has no pressure; set gravity, or leave ponding out.')
+      else if (model%subtract_flow) then
+         call raise(fault, EXIT_INPUT, place_of(load)//NO_SUBTRACTION)
+      end if
+   end subroutine check_rain
+
+   !> The rain among the loads, at both ends of the step.
+   subroutine before_step(self, model, dt, solution, fault)
+      class(run_off_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: dt
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+
+      associate (u1 => self, u2 => fault)
+      end associate
+      associate (c => solution%constraint, stage => model%stages(solution%at%stage), now => solution%state%time)
+         c%rain_0 = rain_at(model, stage, model%dofs, now)
+         c%rain_1 = rain_at(model, stage, model%dofs, now + dt)
+      end associate
+   end subroutine before_step
+
+   !> The rain of a stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
+   pure function rain_at(model, stage, dofs, time) result(rain)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: time   !< [s]
+      real(wp) :: rain(dofs%n)
+      integer :: i
+
+      rain = 0.0_wp
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            if (one%kind == LOAD_RAIN .and. acts_in(one%stages, stage%name)) &
+               rain = rain + factor_at(model, one%amplitude, time)*one%value*one%shape
+         end associate
+      end do
+   end function rain_at
+
+   subroutine prescribe(self, model, time, solution)
+      class(run_off_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: time
+      type(solution_t), intent(inout) :: solution
+
+      associate (stage => model%stages(solution%at%stage))
+         if (has_rates(stage%kind)) call limit_pressures(self, model, stage, model%dofs, time, solution%constraint)
+      end associate
+   end subroutine prescribe
+
+   !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest, whose group
+   !> has the run-off. What another &fix gives has no limit. The air of such a face is that outside.
+   !> docs/theory/host.md section 7.7.
+   subroutine limit_pressures(self, model, stage, dofs, time, constraint)
+      class(run_off_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: time   !< At the end of the step [s].
+      type(constraint_t), intent(inout) :: constraint
+      integer :: i, k
+
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
+            if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
+            do k = 1, size(nodes)
+               ! The water outside, where it stands, else the air.
+               if (.not. is_released(constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, value_of(fix, &
+                  model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
+            end do
+         end associate
+      end do
+      do i = 1, size(model%loads)
+         associate (load => model%loads(i), nodes => model%domain%mesh%groups(model%loads(i)%group)%nodes)
+            if (load%kind /= LOAD_RAIN .or. .not. acts_in(load%stages, stage%name)) cycle
+            do k = 1, size(nodes)
+               call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*self%ponding(i), load%group)
+            end do
+         end associate
+      end do
+   contains
+      subroutine limit(node, value, group)
+         integer, intent(in) :: node, group
+         real(wp), intent(in) :: value   !< [kPa]
+
+         associate (at => dofs%of(AT_P_W, node))
+            if (at == 0) return
+            if (constraint%fixed(at)) return
+            if (constraint%limited(at) .and. constraint%target(at) <= value) return
+            constraint%limited(at) = .true.
+            constraint%target(at) = value
+            constraint%limited_by(at) = group
+         end associate
+         associate (at => dofs%of(AT_P_C, node))
+            if (at == 0 .or. constraint%air(node)) return
+            if (constraint%fixed(at)) return
+         end associate
+         constraint%air(node) = .true.
+         constraint%air_target(node) = 0.0_wp
+      end subroutine limit
+   end subroutine limit_pressures
+end module run_off
