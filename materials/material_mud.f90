@@ -82,6 +82,7 @@ contains
 
       tested = [law%tested_e%least, law%tested_e%most, law%tested_p%least, law%tested_p%most]
       call read_parameters(group, law%props, title, law%doubt, fault, tested)
+      law%cohesionless = .true.
       law%tested_e = range_t(tested(1), tested(2))
       law%tested_p = range_t(tested(3), tested(4))
       if (fault%code /= 0) return

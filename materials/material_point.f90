@@ -72,6 +72,7 @@ module material_point
       logical :: saturation_is_state = .false.   !< The saturation has a history: retention() is where it starts, no
                                                  !< more.
       logical :: unguarded = .false.        !< Made for a mean effective stress above 0, and nothing keeps it there.
+      logical :: cohesionless = .false.     !< It bears no tension, and without stress it has no stiffness.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0
       real(wp) :: tolerance = 0.0_wp        !< Tolerance of the stress integration, relative; 0: the law has none.

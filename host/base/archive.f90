@@ -17,7 +17,7 @@ module archive
    type :: archive_kind_t
       character(24) :: kind      !< As it stands in the file.
       character(4) :: format     !< Grows with every change of what is stored.
-      character(50) :: name      !< What a user should name.
+      character(50) :: name      !< The file that a user should name.
       character(160) :: other    !< Stands behind the path of a file of another kind.
       character(60) :: remedy    !< Advice for a file of another version.
    end type archive_kind_t

@@ -1,18 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> Settings that the process asks of its libraries: the fronts of a factorisation are too small to be worth threads of
-!> the BLAS; memory that every factorisation needs anew is kept; threads that have nothing to do wait asleep, since one
-!> thread works for long between the parallel parts of a step. Every setting is optional: libraries without it run
-!> unchanged.
+!> Settings that the process asks of the system and its libraries. A file that reaches its limit is an error of the
+!> write; an interrupt is noticed, not obeyed at once. The fronts of a factorisation are too small to be worth threads
+!> of the BLAS; memory that every factorisation needs anew is kept; threads that have nothing to do wait asleep, since
+!> one thread works for long between the parallel parts of a step. Libraries without a setting run unchanged.
 module process_settings
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_funptr, c_loc, c_ptr, c_null_ptr, c_null_char, &
                                           c_associated, c_f_procpointer
    use dynamic_loader, only: dlsym
+   use files, only: limits_are_errors
+   use interrupts, only: catch_interrupts
    use omp_lib, only: omp_get_max_threads
    implicit none (type, external)
    private
    public :: apply_process_settings
 
-   integer(c_int), parameter :: TRIM_THRESHOLD = -1, MMAP_THRESHOLD = -3   !< Of mallopt (malloc.h of glibc).
+   integer(c_int), parameter :: TRIM_THRESHOLD = -1, MMAP_THRESHOLD = -3   !< Numbers of mallopt (malloc.h of glibc).
    integer(c_int), parameter :: KEPT = 2**30, LARGEST = 2**25              !< [bytes] The largest glibc takes: 32 MiB.
 
    abstract interface
@@ -49,6 +51,8 @@ contains
       type(c_funptr) :: found
       integer(c_int) :: done
 
+      call limits_are_errors()
+      call catch_interrupts()
       found = dlsym(c_null_ptr, 'openblas_set_num_threads'//c_null_char)
       if (c_associated(found)) then
          call c_f_procpointer(found, threads)

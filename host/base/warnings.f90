@@ -17,7 +17,7 @@ contains
    !> Adds a text to a list.
    subroutine add_warning(text, list)
       character(*), intent(in) :: text
-      character(WARNING_LENGTH), allocatable, intent(inout) :: list(:)   !< It grows by one. (warnings)
+      character(WARNING_LENGTH), allocatable, intent(inout) :: list(:)   !< List that grows by one. (warnings)
       character(WARNING_LENGTH), allocatable :: more(:)
       integer :: n
 

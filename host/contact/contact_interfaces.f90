@@ -20,7 +20,7 @@ module contact_interfaces
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, shortest_edge, plate_link_t, new_interface, &
              tie_to_plate, plate_surface
-   public :: begin_friction, follow_friction, friction_turns, accept_friction
+   public :: begin_friction, follow_turns, contacts_turn, accept_friction, tangential_traction
    public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
              contact_forces, mean_contact_forces, rounding_of_ties, stretch_ties, exchange_contacts
 
@@ -58,7 +58,6 @@ module contact_interfaces
       integer, allocatable :: unknown(:)    !< Unknown of the equations for every unknown of the kernel, or of slave and
                                             !< plate; 0: none.
       logical :: acts = .true.              !< In this stage.
-      logical :: told = .false.             !< The warning of this contact has been given.
       ! Outcome of the last evaluation within a step.
       real(wp) :: thrust = 0.0_wp           !< Vertical force on the master, upwards [kN].
       real(wp) :: energy = 0.0_wp           !< Energy of the penalty [kJ].
@@ -310,7 +309,7 @@ contains
 
    !> Notes before a correction which way the nodes slide now, so that none turns with it from one way to the other. At
    !> the start and the end of a step (`fresh`) no node has a way. docs/theory/contact.md section 9.
-   subroutine follow_friction(contacts, fresh)
+   subroutine follow_turns(contacts, fresh)
       type(contacts_t), intent(inout) :: contacts
       logical, intent(in) :: fresh
       integer :: i
@@ -321,10 +320,10 @@ contains
             if (t%rubs) t%friction%side = merge(0, t%result%side, fresh)
          end associate
       end do
-   end subroutine follow_friction
+   end subroutine follow_turns
 
    !> Whether a node was held at the last evaluation, because it turned from sliding one way to sliding the other.
-   pure logical function friction_turns(contacts) result(turns)
+   pure logical function contacts_turn(contacts) result(turns)
       type(contacts_t), intent(in) :: contacts
       integer :: i
 
@@ -332,7 +331,7 @@ contains
       if (.not. allocated(contacts%interfaces)) return
       turns = any([(contacts%interfaces(i)%acts .and. contacts%interfaces(i)%result%turns, &
                     i=1, size(contacts%interfaces))])
-   end function friction_turns
+   end function contacts_turn
 
    !> Takes the tractions at the end of an accepted step; what sliding has dissipated in it [kJ].
    !> docs/theory/contact.md section 9.
@@ -355,6 +354,15 @@ contains
          end associate
       end do
    end subroutine accept_friction
+
+   !> Traction of a slave node along the slave's tangent at the start of the step [kPa].
+   pure real(wp) function tangential_traction(t, node) result(traction)
+      type(contact_interface_t), intent(in) :: t
+      integer, intent(in) :: node   !< Number of the node on the slave.
+
+      traction = 0.0_wp
+      if (t%rubs) traction = t%friction%traction(node)
+   end function tangential_traction
 
    !> Sets the states of the contact points at the displacements at the start of a step; false if a kernel refuses them.
    !> docs/theory/contact.md section 5. A step that is cut, and a restart, find the same states.

@@ -10,14 +10,14 @@ module acoustic_tensor
 
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
    integer, parameter :: PAIRS = 16        !< Angles that are looked at, each with the one at right angles to it.
-   real(wp), parameter :: SPACING = PI/(2*PAIRS)   !< Between them.
+   real(wp), parameter :: SPACING = PI/(2*PAIRS)   !< Angle between them.
    integer :: i   ! Of the lists below.
    real(wp), parameter :: COS_2(PAIRS) = [(cos(2*SPACING*i), i=0, PAIRS - 1)], &
                           SIN_2(PAIRS) = [(sin(2*SPACING*i), i=0, PAIRS - 1)], &
                           COS_4(PAIRS) = [(cos(4*SPACING*i), i=0, PAIRS - 1)], &
                           SIN_4(PAIRS) = [(sin(4*SPACING*i), i=0, PAIRS - 1)]
-   !> Of the magnitudes of its terms: a determinant that small is rounding, of the solid whose determinant is zero (a
-   !> fluid, a perfectly plastic solid without volume change in plane strain).
+   !> Share of the magnitudes of its terms: a determinant that small is rounding, of the solid whose determinant is zero
+   !> (a fluid, a perfectly plastic solid without volume change in plane strain).
    real(wp), parameter :: ROUNDING = 1.0e-10_wp
 
    !> The determinant as a sum of waves over the angle of the normal, mean + c2 cos 2t + s2 sin 2t + c4 cos 4t + s4 sin
@@ -26,11 +26,12 @@ module acoustic_tensor
       real(wp) :: mean, c2, s2, c4, s4
    end type determinant_t
 contains
-   !> Of a tangent. docs/theory/host.md section 16. The hoop strain does not jump across a band.
+   !> Determinant of the acoustic tensor of a tangent. docs/theory/host.md section 16. The hoop strain does
+   !> not jump across a band.
    pure type(determinant_t) function determinant_of(tangent) result(q)
       real(wp), intent(in) :: tangent(PLANE, PLANE)   !< d sigma'/d strain, engineering shear [kPa].
-      real(wp) :: rr(3), rz(3), zr(3), zz(3)   !< Of the acoustic tensor: factors of cos2, cos sin, sin2.
-      real(wp) :: a(0:4)                       !< Of the determinant: factors of cos4, cos3 sin, ..., sin4.
+      real(wp) :: rr(3), rz(3), zr(3), zz(3)   !< Acoustic tensor: factors of cos2, cos sin, sin2.
+      real(wp) :: a(0:4)                       !< Determinant: factors of cos4, cos3 sin, ..., sin4.
 
       associate (d => tangent)
          rr = [d(1, 1), d(1, 4) + d(4, 1), d(4, 4)]
@@ -50,10 +51,10 @@ contains
       q%s4 = (a(1) - a(3))/8
    end function determinant_of
 
-   !> For a normal [kPa2].
+   !> Determinant for a normal [kPa2].
    elemental real(wp) function determinant_at(q, angle)
       type(determinant_t), intent(in) :: q
-      real(wp), intent(in) :: angle   !< From r towards z.
+      real(wp), intent(in) :: angle   !< Angle of the normal from r towards z.
 
       determinant_at = q%mean + q%c2*cos(2*angle) + q%s2*sin(2*angle) + q%c4*cos(4*angle) + q%s4*sin(4*angle)
    end function determinant_at
@@ -79,7 +80,7 @@ contains
    pure subroutine least_determinant(q, least, angle)
       type(determinant_t), intent(in) :: q
       real(wp), intent(out) :: least   !< [kPa2]
-      real(wp), intent(out) :: angle   !< Of the normal, from r towards z, 0 to pi.
+      real(wp), intent(out) :: angle   !< Angle of the normal from r towards z, 0 to pi.
       real(wp) :: values(0:2*PAIRS - 1), t, value
       integer :: k
 
@@ -100,7 +101,7 @@ contains
    pure real(wp) function lowest_near(q, start) result(t)
       type(determinant_t), intent(in) :: q
       real(wp), intent(in) :: start
-      integer, parameter :: MOST = 50   !< It converges in five; by halves alone it takes 50.
+      integer, parameter :: MOST = 50   !< The search converges in five; by halves alone it takes 50.
       real(wp) :: slope, curvature, from, to, before
       integer :: n
 

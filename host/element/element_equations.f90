@@ -11,7 +11,7 @@ module element_equations
                             COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
                              U
-   use generalised_alpha, only: scheme_t, DYNAMIC
+   use generalised_alpha, only: scheme_t
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
    implicit none (type, external)
@@ -37,8 +37,9 @@ module element_equations
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
-      real(wp) :: stretch(MAX_DOF) = 0.0_wp      !< Sums of magnitudes, of volume balances those of strain rates and
-                                                 !< fluxes, of momentum those of weight and of the rounding of inertia.
+      !> Sums of magnitudes: of volume balances those of strain rates and fluxes, in the rows of p_c those of the water
+      !> alone; of momentum those of weight and of the rounding of inertia.
+      real(wp) :: stretch(MAX_DOF) = 0.0_wp
       integer :: source = BY_MATERIAL            !< Source of the response of the points, see carried_slopes.
       integer :: fallback = NO_FALLBACK          !< Kind of replacement of soft tangents, see tangent_fallback.
       integer :: replaced = 0                    !< Number of points whose tangent was replaced.
@@ -182,8 +183,8 @@ contains
             if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
             k(g)%gravity = gravity
             k(g)%speed = 0.0_wp
-            if (scheme%kind == DYNAMIC) k(g)%velocity = matmul(nodes%v0, gp%n)
-            if (region%damping > 0.0_wp .and. scheme%kind == DYNAMIC) k(g)%speed = matmul(nodes%v, gp%n)
+            if (scheme%has_inertia) k(g)%velocity = matmul(nodes%v0, gp%n)
+            if (region%damping > 0.0_wp .and. scheme%has_inertia) k(g)%speed = matmul(nodes%v, gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &
                k(g)%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
@@ -205,7 +206,7 @@ contains
       nodes%u0 = old%x(:DISPLACEMENTS, node)
       nodes%u1 = new%x(:DISPLACEMENTS, node)
       nodes%a = 0.0_wp
-      if (scheme%kind == DYNAMIC) nodes%a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+      if (scheme%has_inertia) nodes%a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
       nodes%v0 = old%v(:DISPLACEMENTS, node)
       nodes%v = nodes%v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - nodes%v0)
       if (domain%n_carriers(element) == 0) return
@@ -234,7 +235,7 @@ contains
       type(pore_t) :: pore
       type(sums_t) :: sums
       type(rows_t) :: rows
-      real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2)
+      real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2, 2)
       integer :: g, i, p, n, n_p, n_fields
 
       n = element_size(domain, element)
@@ -267,8 +268,8 @@ contains
                new%s_rate(p) = pore%s_rate
                rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
                do i = 1, n_p
-                  out%stretch(LAST_U + i) = out%stretch(LAST_U + i) + rate*abs(gp%m(i)) &
-                     + gp%weight*(drift(1)*abs(gp%dm(i, 1)) + drift(2)*abs(gp%dm(i, 2)))
+                  out%stretch([LAST_U + i, LAST_U + n_p + i]) = out%stretch([LAST_U + i, LAST_U + n_p + i]) &
+                     + rate*abs(gp%m(i)) + gp%weight*matmul(abs(gp%dm(i, :)), drift)
                end do
             else
                call solid_response(region, scheme, k(g), old%stress(:, p), skeleton, old%e(p), with_tangent, response, &
@@ -282,7 +283,7 @@ contains
                change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), &
                          response), &
                change)
-            if (scheme%kind == DYNAMIC) call add_flight_scale(domain, region, k(g), scheme, skeleton, gp, out%stretch)
+            if (scheme%has_inertia) call add_flight_scale(domain, region, k(g), scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, rows, n_fields, tangent, sums%k)
          end associate
       end do
@@ -290,9 +291,6 @@ contains
       call residual_of(sums%r, n_fields, n_p, out%r)
       if (out%with_change) call residual_of(change, DISPLACEMENTS, n_p, out%change)
       if (with_tangent) call matrix_of(sums%k, n_fields, n_p, out%k)
-      do i = LAST_U + n_p + 1, n
-         out%stretch(i) = out%stretch(i - n_p)
-      end do
    end subroutine add_points
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
@@ -342,7 +340,7 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(nodes_t), intent(in) :: nodes
       type(kinematics_t), intent(inout) :: k
-      real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(3)
+      real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(4)
       integer :: i
 
       slopes = 0.0_wp
@@ -353,12 +351,14 @@ contains
          slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du
          slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du
          hoop = hoop + gp%n_over_r(i)*du(1)
-         rates = rates + [gp%dn(i, 1)*nodes%v(1, i), gp%dn(i, 2)*nodes%v(2, i), gp%n_over_r(i)*nodes%v(1, i)]
+         rates = rates + [gp%dn(i, 1)*nodes%v(1, i), gp%dn(i, 2)*nodes%v(2, i), gp%n_over_r(i)*nodes%v(1, i), &
+                          gp%dn(i, 2)*nodes%v(1, i) + gp%dn(i, 1)*nodes%v(2, i)]
       end do
       k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
-      k%div_v = sum(rates)
+      k%rate = rates
+      k%div_v = sum(rates(:3))
       k%accel = 0.0_wp
-      if (scheme%kind == DYNAMIC) then
+      if (scheme%has_inertia) then
          do i = 1, 6
             k%accel = k%accel + nodes%a(:, i)*gp%n(i)
          end do

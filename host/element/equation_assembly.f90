@@ -12,7 +12,7 @@ module equation_assembly
    use porous_domain, only: domain_t, state_t, is_present, keep_element_state, COUPLED
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
-   use unknown_fields, only: DISPLACEMENTS
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
    integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
@@ -23,6 +23,8 @@ module equation_assembly
       real(wp), allocatable :: k(:)                  !< Matrices of the elements, one behind the other, see pattern_t.
       real(wp), allocatable :: stretch(:, :)         !< See element_t.
       real(wp), allocatable :: floor(:)              !< Assembled floor: what a volume balance is small against.
+      !> Sum of the magnitudes of the elements' balances of water, in the rows of p_w, where air is an unknown.
+      real(wp), allocatable :: water(:)
       real(wp) :: unresolved = 0.0_wp   !< Force of which the tolerance is what rounding leaves of ties [kN].
       logical :: with_change = .false.               !< Whether a step is measured against what it changes.
       real(wp) :: rounding_share = 0.0_wp            !< Then what changes counts as at least this share of all forces.
@@ -57,6 +59,7 @@ contains
       allocate (assembly%stretch(m, size(dofs%element, 2)), source=0.0_wp)
       allocate (assembly%residual(dofs%n), assembly%scale(dofs%n), assembly%floor(dofs%n), source=0.0_wp)
       allocate (assembly%values(size(pattern%col)), source=0.0_wp)
+      if (domain%with_c) allocate (assembly%water(dofs%n), source=0.0_wp)
       allocate (assembly%air(size(domain%mesh%x, 2)), source=.false.)
       assembly%slopes = new_slopes(size(domain%mesh%t6, 2)*domain%rule)
    end subroutine make_assembly
@@ -139,6 +142,7 @@ contains
          if (assembly%fallback /= NO_FALLBACK) assembly%replaced = sum(assembly%soft)
       end if
       call add_up(threads, pattern, with_tangent, assembly)
+      if (allocated(assembly%water)) call add_up_water(domain, dofs, pattern, assembly)
       if (assembly%with_change) call add_up_change(dofs, pattern, assembly)
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
@@ -195,6 +199,30 @@ contains
          end do
       end do
    end subroutine add_up_change
+
+   !> The magnitudes of the balances of water: the rows of p_w less those of p_c, unless they are it already.
+   pure subroutine add_up_water(domain, dofs, pattern, assembly)
+      type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(assembly_t), intent(inout) :: assembly
+      integer :: i, j, e, at
+
+      do i = 1, pattern%n
+         if (dofs%field(i) /= AT_P_W) cycle
+         assembly%water(i) = 0.0_wp
+         do j = pattern%r_first(i), pattern%r_first(i + 1) - 1
+            e = (pattern%r_source(j) - 1)/size(assembly%r, 1) + 1
+            at = pattern%r_source(j) - (e - 1)*size(assembly%r, 1)
+            if (assembly%air(dofs%node(i))) then
+               assembly%water(i) = assembly%water(i) + abs(assembly%r(at, e))
+            else
+               assembly%water(i) = assembly%water(i) + abs(assembly%r(at, e) &
+                                                          - assembly%r(at + domain%n_carriers(e), e))
+            end if
+         end do
+      end do
+   end subroutine add_up_water
 
    subroutine add_up(threads, pattern, with_tangent, assembly)
       integer, intent(in) :: threads

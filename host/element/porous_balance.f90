@@ -9,11 +9,11 @@ module porous_balance
    use porous_domain, only: domain_t, region_t, COUPLED, UNDRAINED
    use permeability_laws, only: relative_t, relative_permeability
    use retention_curves, only: saturation_t
-   use generalised_alpha, only: scheme_t, rate_of, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t, rate_of
    implicit none (type, external)
    private
    public :: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, &
-             GW, GA
+             GW, GA, DEVIATOR
 
    integer, parameter :: PLACES = 12
    ! Places, or places before the first; the strain comes first.
@@ -21,6 +21,9 @@ module porous_balance
    integer, parameter :: U = 4            !< Displacements are at U + 1, U + 2.
    integer, parameter :: PW = 7, PC = 8   !< Water pressure, suction.
    integer, parameter :: GW = 8, GA = 10  !< Gradients of p_w at GW + 1, GW + 2, of p_c at GA + 1, GA + 2.
+   !> Twice the deviator of a strain with engineering shear: stress of a unit viscosity from the rate of strain.
+   real(wp), parameter :: DEVIATOR(4, 4) = &
+      reshape([4, -2, -2, 0, -2, 4, -2, 0, -2, -2, 4, 0, 0, 0, 0, 3], [4, 4])/3.0_wp
 
    !> Strain, pressures, their gradients and rates at a point, from the nodes.
    type :: kinematics_t
@@ -29,6 +32,7 @@ module porous_balance
       real(wp) :: gravity                       !< At the level of values [m/s2].
       real(wp) :: speed(2)                      !< At its level, where it may be damped [m/s].
       real(wp) :: velocity(2)                   !< Before, in dynamic stages [m/s].
+      real(wp) :: rate(4)                       !< Rate of strain at the level of velocities [1/s].
       real(wp) :: div_v                         !< Rate of volume at its level [1/s].
       real(wp) :: w0, w1, c0, c1                !< p_w, p_c before and after [kPa].
       real(wp) :: w_dot, c_dot                  !< Rates of the pressures at their level [kPa/s].
@@ -81,19 +85,20 @@ contains
       type(pore_t), intent(out) :: new
       logical, intent(in) :: with_tangent
       real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)   !< The tangent where it is asked for.
-      real(wp), intent(out) :: drift(2)      !< Magnitudes of the parts of both fluxes [m/s].
+      real(wp), intent(out) :: drift(2, 2)   !< Magnitudes of parts of the fluxes, of both fluids and of water [m/s].
       type(mixture_t) :: mix
 
       call fill_pores(domain, region, scheme, k, skeleton, old, new, mix)
       if (with_tangent) tangent = 0.0_wp
       drift = 0.0_wp
       call add_momentum(domain, region, scheme, k, stress0, skeleton, mix, with_tangent, response, tangent)
-      if (scheme%kind == STATIC) return
+      if (.not. scheme%has_rates) return
       if (region%drainage /= COUPLED .and. region%drainage /= UNDRAINED) return
       if (region%drainage == COUPLED) &
          mix%rel = relative_permeability(domain%permeabilities(region%permeability), mix%s)
-      call add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
-      if (region%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift)
+      call add_water(domain, region, scheme, k, mix, with_tangent, response, tangent, drift(:, 2))
+      drift(:, 1) = drift(:, 2)
+      if (region%with_c) call add_air(domain, region, scheme, k, mix, with_tangent, response, tangent, drift(:, 1))
       response(PW) = response(PW) - k%source(3)
    end subroutine point_response
 
@@ -122,9 +127,11 @@ contains
       response = 0.0_wp
       response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
       response(U + 1:U + 2) = rho*accel - k%source(1:2)
+      if (is_viscous(region, scheme)) response(1:4) = response(1:4) + region%viscosity*matmul(DEVIATOR, k%rate)
       if (.not. with_tangent) return
       tangent(:U + 2, :U + 2) = 0.0_wp
       tangent(1:4, 1:4) = l_s*skeleton%tangent
+      if (is_viscous(region, scheme)) tangent(1:4, 1:4) = tangent(1:4, 1:4) + region%viscosity*scheme%c_v*DEVIATOR
       tangent(U + 1, U + 1) = rho*slope_of_inertia(region, scheme)
       tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
       do i = 1, 3
@@ -139,9 +146,17 @@ contains
       type(scheme_t), intent(in) :: scheme
 
       level = scheme%l_f
-      if (region%stiffness_damping > 0.0_wp .and. scheme%kind == DYNAMIC .and. scheme%c_v > 0.0_wp) &
+      if (region%stiffness_damping > 0.0_wp .and. scheme%has_inertia .and. scheme%c_v > 0.0_wp) &
          level = level + region%stiffness_damping/scheme%dt
    end function level_of_stress
+
+   !> Whether a viscous stress acts: static stages have no time.
+   pure logical function is_viscous(region, scheme)
+      type(region_t), intent(in) :: region
+      type(scheme_t), intent(in) :: scheme
+
+      is_viscous = region%viscosity > 0.0_wp .and. scheme%has_rates
+   end function is_viscous
 
    !> Slope of accelerations and damping against the new displacements [1/s2].
    pure real(wp) function slope_of_inertia(region, scheme) result(slope)
@@ -149,7 +164,7 @@ contains
       type(scheme_t), intent(in) :: scheme
 
       slope = scheme%c_a
-      if (scheme%kind == DYNAMIC) slope = slope + region%damping*scheme%c_v
+      if (scheme%has_inertia) slope = slope + region%damping*scheme%c_v
    end function slope_of_inertia
 
    !> Void ratio and saturation at the end of the step, and the mixture at its levels: saturated where the scene has no
@@ -240,10 +255,12 @@ contains
          accel(2) = accel(2) + k%gravity
          response = 0.0_wp
          response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
+         if (is_viscous(region, scheme)) response(1:4) = response(1:4) + region%viscosity*matmul(DEVIATOR, k%rate)
          response(1:3) = response(1:3) - pressure
          response(U + 1:U + 2) = rho*accel - k%source(1:2)
          if (.not. with_tangent) return
          tangent(1:4, 1:4) = l_s*skeleton%tangent
+         if (is_viscous(region, scheme)) tangent(1:4, 1:4) = tangent(1:4, 1:4) + region%viscosity*scheme%c_v*DEVIATOR
          tangent(1:3, PW) = -l
          tangent(U + 1, U + 1) = rho*slope_of_inertia(region, scheme)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)

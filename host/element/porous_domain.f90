@@ -14,8 +14,8 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, keep_element_state, &
-             exchange_state
+             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
+             keep_element_state, exchange_state
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
    integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.
@@ -43,6 +43,7 @@ module porous_domain
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
       real(wp) :: damping = 0.0_wp      !< Force against the velocity over mass, in dynamic stages [1/s].
       real(wp) :: stiffness_damping = 0.0_wp  !< Stress of the skeleton over its rate, in dynamic stages [s].
+      real(wp) :: viscosity = 0.0_wp    !< Shear viscosity beside the skeleton, in stages with time [kPa s].
       integer :: drainage = COUPLED
       logical :: with_w = .false., with_c = .false.   !< Whether its pores hold water, and air at another pressure.
    end type region_t
@@ -269,6 +270,17 @@ contains
       mixture_density = mixture_density + n*s*domain%fluids%rho_w
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
+
+   !> Strain of displacements of the nodes, or rate of velocities, at a point: rr, zz, tt and engineering shear rz.
+   pure function strain_of(gp, u) result(strain)
+      type(gauss_t), intent(in) :: gp
+      real(wp), intent(in) :: u(2, 6)   !< [m] or [m/s]
+      real(wp) :: strain(4)
+
+      strain = [dot_product(gp%dn(:, 1), u(1, :)), dot_product(gp%dn(:, 2), u(2, :)), &
+                dot_product(gp%n_over_r, u(1, :)), &
+                dot_product(gp%dn(:, 2), u(1, :)) + dot_product(gp%dn(:, 1), u(2, :))]
+   end function strain_of
 
    !> Whether an element is part of the ground.
    pure logical function is_present(state, element)

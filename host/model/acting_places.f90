@@ -4,7 +4,7 @@
 module acting_places
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
-   use generalised_alpha, only: DYNAMIC
+   use generalised_alpha, only: has_inertia
    use model_types, only: model_t, action_t
    use scene_types, only: acts_in, place_of, NAME_LENGTH
    use texts, only: short
@@ -54,7 +54,7 @@ contains
       logical :: wanted(size(model%stages))
       integer :: s
 
-      wanted = [((model%stages(s)%kind == DYNAMIC .or. .not. action%damps) .and. &
+      wanted = [((has_inertia(model%stages(s)%kind) .or. .not. action%damps) .and. &
                  acts_in(action%stages, model%stages(s)%name), s=1, size(wanted))]
       allocate (names(count(wanted)))
       names = pack(model%stages%name, wanted)

@@ -346,8 +346,6 @@ contains
             return
          end if
       end do
-      if (contact%drains_by_state .and. .not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(contact)// &
-         'drainage = ''state'' needs pressures; see fields in &scene.')
    end subroutine build_contact
 
    !> Pairs of nodes at equal heights.

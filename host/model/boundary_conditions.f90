@@ -2,13 +2,12 @@
 !> What a step prescribes: displacements, pore pressures and air pressures at its end, and the masses of plates.
 module boundary_conditions
    use kinds, only: wp
-   use contact_drainage, only: drainage_t, is_released
    use degrees_of_freedom, only: dofs_t, unknowns_of_body
    use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
    use limited_pressures, only: begin_sides
    use model_types, only: model_t, factor_at, gravity_at
    use porous_domain, only: state_t
-   use prescribed_values, only: constraint_t
+   use prescribed_values, only: constraint_t, is_released
    use scene_types, only: acts_in, stage_t, fix_t, LOAD_RAIN, PRESCRIBED_P_A
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
@@ -53,11 +52,10 @@ contains
 
    !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
    !> docs/theory/host.md sections 3.5, 7.1 and 7.7. Accelerations: see follow_accelerations.
-   subroutine constrain_step(model, stage, dofs, drainage, time, x_start, constraint)
+   subroutine constrain_step(model, stage, dofs, time, x_start, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
-      type(drainage_t), intent(in) :: drainage
       real(wp), intent(in) :: time, x_start(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa].
       type(constraint_t), intent(inout) :: constraint
       real(wp) :: value, factor
@@ -82,7 +80,7 @@ contains
             factor = factor_at(model, fix%amplitude, time)
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                node = model%domain%mesh%groups(fix%group)%nodes(k)
-               if (is_released(drainage, i, node)) cycle
+               if (is_released(constraint, i, node)) cycle
                value = value_of(fix, model%domain%mesh%x(2, node), factor)
                if (fix%field == PRESCRIBED_P_A) then
                   if (dofs%of(AT_P_C, node) == 0) cycle
@@ -99,7 +97,7 @@ contains
             end do
          end associate
       end do
-      if (stage%kind /= STATIC) call limit_pressures(model, stage, dofs, drainage, time, constraint)
+      if (stage%kind /= STATIC) call limit_pressures(model, stage, dofs, time, constraint)
    end subroutine constrain_step
 
    !> What follows from the prescribed values of supports and terms. Pressures with a limit begin on that side of it on
@@ -147,11 +145,10 @@ contains
    !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest, whose group
    !> has the run-off. What another &fix gives has no limit. The air of such a face is that outside.
    !> docs/theory/host.md section 7.7.
-   subroutine limit_pressures(model, stage, dofs, drainage, time, constraint)
+   subroutine limit_pressures(model, stage, dofs, time, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
-      type(drainage_t), intent(in) :: drainage
       real(wp), intent(in) :: time   !< At the end of the step [s].
       type(constraint_t), intent(inout) :: constraint
       integer :: i, k
@@ -161,7 +158,7 @@ contains
             if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
             do k = 1, size(nodes)
                ! The water outside, where it stands, else the air.
-               if (.not. is_released(drainage, i, nodes(k))) call limit(nodes(k), max(0.0_wp, value_of(fix, &
+               if (.not. is_released(constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, value_of(fix, &
                   model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
             end do
          end associate
@@ -272,11 +269,11 @@ contains
 
    !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:
    !> none. The last one counts, as in constrain_step.
-   subroutine prescribing_fixes(model, stage, dofs, drainage, time, by, air_by)
+   subroutine prescribing_fixes(model, stage, dofs, constraint, time, by, air_by)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
-      type(drainage_t), intent(in) :: drainage
+      type(constraint_t), intent(in) :: constraint
       real(wp), intent(in) :: time   !< At the end of a step [s].
       integer, intent(out) :: by(:), air_by(:)   !< (unknowns), (nodes)
       integer :: i, k, node, at
@@ -288,7 +285,7 @@ contains
             if (.not. acts(fix, stage, time) .or. fix%limits) cycle
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                node = model%domain%mesh%groups(fix%group)%nodes(k)
-               if (is_released(drainage, i, node)) cycle
+               if (is_released(constraint, i, node)) cycle
                at = dofs%of(min(fix%field, AT_P_C), node)
                if (at == 0) cycle
                if (fix%field == PRESCRIBED_P_A) air_by(node) = i

@@ -7,7 +7,6 @@ module initial_conditions
    use model_types, only: model_t, gravity_at
    use given_pressures, only: pressures_at_start, water, suction
    use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY, is_present
-   use material_mud, only: mud_t
    use material_point, only: material_t, range_t
    use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
@@ -147,15 +146,13 @@ contains
       real(wp), intent(in) :: stress(6), z
       type(tension_t), intent(inout) :: tension
 
-      select type (law)
-      type is (mud_t)
-         if (.not. any(abs(stress(1:3)) > 0.0_wp)) tension%bare = tension%bare + 1
-         if (.not. any(stress(1:3) > 0.0_wp)) return
-         tension%points = tension%points + 1
-         if (maxval(stress(1:3)) <= tension%largest) return
-         tension%largest = maxval(stress(1:3))
-         tension%z = z
-      end select
+      if (.not. law%cohesionless) return
+      if (.not. any(abs(stress(1:3)) > 0.0_wp)) tension%bare = tension%bare + 1
+      if (.not. any(stress(1:3) > 0.0_wp)) return
+      tension%points = tension%points + 1
+      if (maxval(stress(1:3)) <= tension%largest) return
+      tension%largest = maxval(stress(1:3))
+      tension%z = z
    end subroutine note_tension
 
    !> Where no region has fluids there are no pressures; undrained elements begin with the means of theirs.

@@ -48,7 +48,7 @@ module model_types
    contains
       procedure(declare_i), deferred, nopass :: declare
       procedure(build_i), deferred :: build
-      procedure :: group, begin_run, begin_stage, before_step, prescribe, exchange, remark
+      procedure :: group, begin_run, begin_stage, before_step, prescribe, accept, exchange, remark
    end type term_t
 
    !> An element of a list of terms.
@@ -148,6 +148,16 @@ contains
       associate (u1 => self, u2 => model, u3 => time, u4 => solution)
       end associate
    end subroutine prescribe
+
+   !> After an accepted step, booked and not yet taken over. Energies [kJ] of the step grow by what the term dissipated.
+   subroutine accept(self, solution, dissipated)
+      class(term_t), intent(inout) :: self
+      type(solution_t), intent(inout) :: solution
+      real(wp), intent(inout) :: dissipated   !< [kJ]
+
+      associate (u1 => self, u2 => solution, u3 => dissipated)
+      end associate
+   end subroutine accept
 
    !> What the term keeps from step to step, and does not find again from the scene.
    subroutine exchange(self, solution, archive)

@@ -9,8 +9,7 @@ module start_look
    use warnings, only: add_warning, WARNING_LENGTH
    use initial_conditions, only: balance_t
    use model_types, only: model_t
-   use scene_types, only: acts_in, amplitude_t, place_of, scene_item_t, fix_t, plate_t, LOAD_PRESSURE, LOAD_AIR, &
-                          PRESCRIBED_P_A
+   use scene_types, only: acts_in, amplitude_t, place_of, scene_item_t, fix_t, plate_t, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)

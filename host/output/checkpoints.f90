@@ -1,17 +1,20 @@
 ! SPDX-License-Identifier: MIT
-!> Checkpoints: the complete state of a run in one file, and a run from one. Every part of a run exchanges what it keeps
-!> by itself.
+!> Observer that writes checkpoints, the complete state of a run in one file, and a run from one. Every part of a run
+!> and every observer exchanges what it keeps by itself.
 module checkpoints
    use archive, only: archive_t, archive_kind_t, create_archive, open_archive, close_archive
    use run_state, only: run_t, exchange_run
-   use output_tables, only: tables_t, flush_tables, exchange_tables
+   use run_observer, only: observer_t, observers_t, slot_t, accepted_step_t
+   use wall_clock, only: clock
+   use interrupts, only: interrupted, EXIT_INTERRUPTED
+   use kinds, only: wp
    use model_types, only: model_t
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
    use namelists, only: group_t
-   use texts, only: whole
+   use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: write_checkpoint, read_checkpoint, CHECKPOINT
+   public :: checkpoint_observer_t, read_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
    type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '18', &
@@ -20,36 +23,82 @@ module checkpoints
       'Finish the run with the program that began it.')
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
+
+   !> It stands behind the observers that it keeps.
+   type, extends(observer_t) :: checkpoint_observer_t
+      real(wp) :: last = 0.0_wp   !< When it was written, on the wall clock [s].
+   contains
+      procedure :: begins
+      procedure :: taken_over
+   end type checkpoint_observer_t
 contains
-   !> Writes the complete state of a run to checkpoint.h5 in the folder of the tables, in place of an older one. Fault
-   !> EXIT_OUTPUT: a table or the checkpoint cannot be written.
-   subroutine write_checkpoint(model, run, tables, fault)
+   !> Begins to count the time to the first checkpoint.
+   subroutine begins(self, model, run, fault)
+      class(checkpoint_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => model, nor => run, never => fault)
+      end associate
+      self%last = clock()
+   end subroutine begins
+
+   !> Writes a checkpoint where it is due, and ends a run that is interrupted. A run that is taken up here has no
+   !> factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be written; EXIT_INTERRUPTED.
+   subroutine taken_over(self, model, run, done, earlier, fault)
+      class(checkpoint_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(in) :: done
+      type(slot_t), intent(inout) :: earlier(:)
+      type(fault_t), intent(inout) :: fault
+      logical :: due
+
+      due = interrupted()
+      if (model%checkpoint_steps > 0) due = due .or. mod(run%steps, model%checkpoint_steps) == 0
+      if (model%checkpoint_seconds > 0.0_wp) due = clock() - self%last >= model%checkpoint_seconds .or. due
+      if (due) then
+         call write_checkpoint(self%folder, model, run, earlier, fault)
+         self%last = clock()
+         run%system%factored = .false.
+         run%assembly%slopes%known = .false.
+      end if
+      if (fault%code == 0 .and. interrupted() .and. .not. (done%last .and. done%stage == size(model%stages))) &
+         call raise(fault, EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to '// &
+                    'there are complete; --restart '//self%folder//'/'//CHECKPOINT//' goes on.')
+   end subroutine taken_over
+
+   !> Writes the complete state of a run to checkpoint.h5, in place of an older one. Fault EXIT_OUTPUT: a table or the
+   !> checkpoint cannot be written.
+   subroutine write_checkpoint(folder, model, run, observers, fault)
+      character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run   !< Stays as it is; a restart would restore it.
-      type(tables_t), intent(inout) :: tables
+      type(slot_t), intent(inout) :: observers(:)
       type(fault_t), intent(inout) :: fault
       type(archive_t) :: archive
       logical :: good
+      integer :: i
 
-      ! What the checkpoint counts on comes first.
-      call flush_tables(tables, fault)
-      if (fault%code /= 0) return
-      call create_archive(tables%folder//'/'//CHECKPOINT, KIND_OF_FILE, archive)
-      call exchange_scene(tables%folder, model, archive, fault)
+      call create_archive(folder//'/'//CHECKPOINT, KIND_OF_FILE, archive)
+      call exchange_scene(folder, model, archive, fault)
       call exchange_run(model, run, archive)
-      call exchange_tables(size(model%points), tables, archive)
+      do i = 1, size(observers)
+         call observers(i)%observer%exchange(archive)
+      end do
       call close_archive(archive, good)
-      if (.not. good) call raise(fault, EXIT_OUTPUT, tables%folder//'/'//CHECKPOINT//' cannot be written; is the '// &
+      if (.not. good) call raise(fault, EXIT_OUTPUT, folder//'/'//CHECKPOINT//' cannot be written; is the '// &
                                  'disk full? The one before is untouched: make room and use --restart.')
    end subroutine write_checkpoint
 
-   !> Puts a prepared run where the checkpoint was written. Fault EXIT_RESTART: no checkpoint, a damaged one,
-   !> one of another version, or of another scene.
-   subroutine read_checkpoint(path, model, run, tables, fault)
+   !> Puts a prepared run and its observers where the checkpoint was written. Fault EXIT_RESTART: no checkpoint, a
+   !> damaged one, one of another version, or of another scene.
+   subroutine read_checkpoint(path, model, run, observers, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(tables_t), intent(inout) :: tables
+      type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
       type(archive_t) :: archive
       logical :: good
@@ -58,10 +107,9 @@ contains
       if (fault%code /= 0) return
       call exchange_scene(path, model, archive, fault)
       if (fault%code == 0) call exchange_run(model, run, archive)
-      if (fault%code == 0) call exchange_tables(size(model%points), tables, archive)
+      if (fault%code == 0) call observers%exchange_all(archive)
       call close_archive(archive, good)
       if (fault%code == 0 .and. .not. good) call raise(fault, EXIT_RESTART, path//DAMAGED)
-      if (fault%code == 0) tables%stage = model%stages(run%at%stage)%name
    end subroutine read_checkpoint
 
    !> Exchanges what tells scenes apart. Fault EXIT_RESTART: the archive belongs to another scene, and the first group

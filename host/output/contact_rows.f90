@@ -3,7 +3,7 @@
 module contact_rows
    use kinds, only: wp
    use boundary_loads, only: plate_loads
-   use contact_interfaces, only: contacts_t, contact_interface_t, probe_interface
+   use contact_interfaces, only: contacts_t, contact_interface_t, probe_interface, tangential_traction
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result
    use contact_types, only: contact_status_t, CONTACT_OK
    use model_types, only: model_t
@@ -103,18 +103,10 @@ contains
                                  status)
             if (status%code /= CONTACT_OK) return
             rows = reshape([rows, (real(c, wp), t%slave%x0(:, i), found%weight(i), found%weight(i)/found%whole(i), &
-                                   found%gap(i), found%pressure(i), shear(t, i), i=1, size(t%slave%node))], &
-                           [8, size(rows, 2) + size(t%slave%node)])
+                                   found%gap(i), found%pressure(i), tangential_traction(t, i), &
+                                   i=1, size(t%slave%node))], [8, size(rows, 2) + size(t%slave%node)])
          end associate
       end do
       call move_alloc(rows, table)
-   contains
-      pure real(wp) function shear(t, i)
-         type(contact_interface_t), intent(in) :: t
-         integer, intent(in) :: i
-
-         shear = 0.0_wp
-         if (t%rubs) shear = t%friction%traction(i)
-      end function shear
    end subroutine contact_nodes
 end module contact_rows

@@ -1,9 +1,14 @@
 ! SPDX-License-Identifier: MIT
-!> Fields in HDF5, one file for the mesh and one for every moment, and results.xdmf, which ParaView opens. Every file is
-!> written as a whole: a run that is killed leaves whole files, and a restart writes the same ones again.
+!> Observer that writes fields in HDF5, one file for the mesh and one for every moment, and results.xdmf, which ParaView
+!> opens. Every file is written as a whole: a run that is killed leaves whole files, and a restart writes the same ones
+!> again.
 module field_files
+   use archive, only: archive_t
    use kinds, only: wp
+   use model_types, only: model_t
    use porous_domain, only: domain_t, state_t
+   use run_observer, only: observer_t, accepted_step_t, slot_t
+   use run_state, only: run_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use files, only: write_whole, bytes_of
    use hdf5_file, only: h5_t, new_file, write_file, open_file, close_file, put, put_text, get_text
@@ -11,11 +16,19 @@ module field_files
    use texts, only: whole
    implicit none (type, external)
    private
-   public :: frames_t, write_mesh, check_mesh, write_frame, all_pressures
+   public :: field_observer_t, check_mesh, all_pressures
 
-   type :: frames_t
-      real(wp), allocatable :: times(:)   !< Of the frames written so far.
-   end type frames_t
+   type, extends(observer_t) :: field_observer_t
+      real(wp), allocatable :: times(:)   !< Of the fields written so far [s].
+   contains
+      procedure :: exchange
+      procedure :: begins
+      procedure :: taken_over
+      procedure :: stage_ends
+   end type field_observer_t
+
+   real(wp), parameter :: PICTURES = 50.0_wp   !< Fields of a stage with controlled steps, if no key says when.
+   real(wp), parameter :: ON_TIME = 1.0e-6_wp   !< Distance from a time of output, share of output_dt, that is rounding.
 
    !> A field of the files: at nodes, or the mean over the volume of an element.
    type :: field_t
@@ -45,6 +58,77 @@ module field_files
       field_t('S_w', '-', 'degree of saturation', .false., 1), &
       field_t('ground', '-', '1: part of the ground at this time, 0: not', .false., 1)]
 contains
+   !> Exchanges the times of the fields that are written.
+   subroutine exchange(self, archive)
+      class(field_observer_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%exchange_allocatable('frames', self%times, 's', 'times of the fields written so far')
+      if (.not. allocated(self%times)) call archive%refuse()
+   end subroutine exchange
+
+   !> A new run writes its mesh and its start. Fault EXIT_OUTPUT: they cannot be written.
+   subroutine begins(self, model, run, fault)
+      class(field_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      if (run%steps > 0) return
+      allocate (self%times(0))
+      call write_mesh(self%folder, trim(model%name), model%fingerprint, model%domain, fault)
+      if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%times, fault)
+   end subroutine begins
+
+   !> Writes the fields after a step where they are due within a stage. Fault EXIT_OUTPUT: they cannot be written.
+   subroutine taken_over(self, model, run, done, earlier, fault)
+      class(field_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(in) :: done
+      type(slot_t), intent(inout) :: earlier(:)
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: now, before
+      logical :: due
+
+      associate (unused => earlier)
+      end associate
+      if (done%last) return
+      due = .false.
+      now = run%state%time - run%at%t_start
+      before = run%state%time - done%scheme%dt - run%at%t_start
+      associate (stage => model%stages(done%stage))
+         if (stage%output_dt > 0.0_wp) then
+            due = abs(now/stage%output_dt - anint(now/stage%output_dt)) < ON_TIME
+         else if (stage%fields > 0) then
+            due = mod(run%at%step, stage%fields) == 0
+         else if (stage%controlled .and. stage%film) then
+            due = picture_of(now/stage%duration) > picture_of(before/stage%duration)
+         end if
+      end associate
+      if (due) call write_frame(self%folder, model%domain, run%state, self%times, fault)
+   contains
+      !> Number of the last picture up to a share of the stage.
+      pure integer function picture_of(share)
+         real(wp), intent(in) :: share   !< [-]
+
+         picture_of = floor(PICTURES*share*(1 + ON_TIME))
+      end function picture_of
+   end subroutine taken_over
+
+   !> Writes the fields at the end of a stage; after a failure too. Fault EXIT_OUTPUT: they cannot be written.
+   subroutine stage_ends(self, model, run, complete, fault)
+      class(field_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => complete)
+      end associate
+      call write_frame(self%folder, model%domain, run%state, self%times, fault)
+   end subroutine stage_ends
+
    !> mesh.h5: nodes, elements, quadrature points, region of every element. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_mesh(folder, model, fingerprint, domain, fault)
       character(*), intent(in) :: folder, model, fingerprint   !< Name and fingerprint of the scene.
@@ -96,11 +180,11 @@ contains
 
    !> fields_NUMBER.h5 of a state, and results.xdmf up to it. Units: see LIST. Fault EXIT_OUTPUT: they cannot be
    !> written.
-   subroutine write_frame(folder, domain, state, frames, fault)
+   subroutine write_frame(folder, domain, state, times, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
       type(state_t), intent(in) :: state
-      type(frames_t), intent(inout) :: frames
+      real(wp), allocatable, intent(inout) :: times(:)   !< Of the fields so far, this one added [s].
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       real(wp) :: x(FIELDS, size(state%x, 2)), cells(8, size(domain%mesh%t6, 2))
@@ -108,8 +192,8 @@ contains
       integer :: i
       logical :: good
 
-      frames%times = [frames%times, state%time]
-      path = folder//'/'//file_of(size(frames%times))
+      times = [times, state%time]
+      path = folder//'/'//file_of(size(times))
       call all_pressures(domain, state, x)
       call new_file(file, path)
       call put_text(file, 'kind', 'fields of mud_host')
@@ -142,7 +226,7 @@ contains
       call put(file, 'points/S_w', state%s, '-', 'degree of saturation of every quadrature point')
       call write_file(file, good)
       if (.not. good) call raise_unwritten(path, fault)
-      if (good) call write_xdmf(folder, domain, state, frames, fault)
+      if (good) call write_xdmf(folder, domain, state, times, fault)
    contains
       subroutine put_list(values)
          real(wp), intent(in) :: values(:)
@@ -233,11 +317,11 @@ contains
       end do
    end subroutine means
 
-   subroutine write_xdmf(folder, domain, state, frames, fault)
+   subroutine write_xdmf(folder, domain, state, times, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
       type(state_t), intent(in) :: state
-      type(frames_t), intent(in) :: frames
+      real(wp), intent(in) :: times(:)   !< [s]
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: LF = new_line('a')
       character(:), allocatable :: text, mesh, attributes
@@ -253,7 +337,7 @@ contains
              '</Geometry>'//LF
       text = '<?xml version="1.0"?>'//LF//'<Xdmf Version="3.0"><Domain>'//LF// &
              '<Grid Name="results" GridType="Collection" CollectionType="Temporal">'//LF
-      do k = 1, size(frames%times)
+      do k = 1, size(times)
          attributes = ''
          do i = 1, size(LIST)
             if (.not. has(domain, state, i)) cycle
@@ -263,7 +347,7 @@ contains
                          item(whole(merge(nodes, elements, LIST(i)%of_nodes))//trim(merge(' 3', '  ', &
                               LIST(i)%components == 3)), 'Float', trim(file_of(k)), place_of(i))//'</Attribute>'//LF
          end do
-         write (time, '(es24.16e3)') frames%times(k)
+         write (time, '(es24.16e3)') times(k)
          text = text//'  <Grid Name="results" GridType="Uniform"><Time Value="'//trim(adjustl(time))//'"/>'//LF// &
                 mesh//attributes//'  </Grid>'//LF
       end do

@@ -1,9 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Progress line of a run, rewritten in place on a terminal; nothing where the output is a file.
+!> Observer that shows the progress of a run in one line, rewritten in place on a terminal; nothing where the output is
+!> a file.
 module progress_line
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use wall_clock, only: clock
+   use faults, only: fault_t
+   use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
+   use wall_clock, only: clock
    use kinds, only: wp
    use model_types, only: model_t
    use files, only: to_terminal, terminal_width
@@ -11,43 +14,50 @@ module progress_line
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: progress_t, show_progress, show_line, clear_progress, steps_left, span_of
+   public :: progress_observer_t, steps_left, span_of
 
    real(wp), parameter :: PERIOD = 0.5_wp                  !< Between two lines [s].
    real(wp), parameter :: MEMORY = 0.9_wp                  !< Share of the past in the mean time of a step.
 
-   type :: progress_t
-      logical :: quiet = .true.
+   type, extends(observer_t) :: progress_observer_t
       integer :: standing = 0               !< Columns of the line that stands on the terminal.
       real(wp) :: last_line = -huge(1.0_wp) !< When it was written.
       real(wp) :: last_step = -1.0_wp
       real(wp) :: pace = 0.0_wp             !< Seconds a step, the last ones counting most.
-   end type progress_t
+   contains
+      procedure :: taken_over
+      procedure :: repeated
+      procedure :: stage_ends
+   end type progress_observer_t
 contains
-   !> After every accepted step. Nothing where the run is quiet.
-   subroutine show_progress(model, run, progress)
+   !> Shows the step, the share of the stage and the time that is left.
+   subroutine taken_over(self, model, run, done, earlier, fault)
+      class(progress_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      type(progress_t), intent(inout) :: progress
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(in) :: done
+      type(slot_t), intent(inout) :: earlier(:)
+      type(fault_t), intent(inout) :: fault
       character(:), allocatable :: line
       real(wp) :: now, left
       logical :: known
       integer :: i
 
-      if (progress%quiet) return
+      associate (unused => done, nor => earlier, never => fault)
+      end associate
       if (.not. to_terminal()) return
       now = clock()
-      if (progress%last_step >= 0.0_wp) then
-         if (progress%pace > 0.0_wp) then
-            progress%pace = MEMORY*progress%pace + (1 - MEMORY)*(now - progress%last_step)
+      if (self%last_step >= 0.0_wp) then
+         if (self%pace > 0.0_wp) then
+            self%pace = MEMORY*self%pace + (1 - MEMORY)*(now - self%last_step)
          else
-            progress%pace = now - progress%last_step
+            self%pace = now - self%last_step
          end if
       end if
-      progress%last_step = now
+      self%last_step = now
       ! The first step has no pace yet.
-      if (.not. progress%pace > 0.0_wp .or. now - progress%last_line < PERIOD) return
-      progress%last_line = now
+      if (.not. self%pace > 0.0_wp .or. now - self%last_line < PERIOD) return
+      self%last_line = now
       associate (stage => model%stages(run%at%stage), at => run%at)
          left = steps_left(stage, at%nominal*at%factor, at%t_start + stage%duration - run%state%time)
          ! Stages to come that choose their steps have not chosen them yet.
@@ -57,27 +67,43 @@ contains
          end do
          line = 'Stage '//trim(stage%name)//': step '//whole(at%step)//', time '//short(run%state%time)//' s, '// &
                 whole(nint(100*(run%state%time - at%t_start)/stage%duration))//' %; about '// &
-                span_of(left*progress%pace)//' left for '//trim(merge('all stages', 'this stage', known))
+                span_of(left*self%pace)//' left for '//trim(merge('all stages', 'this stage', known))
       end associate
-      call write_line(line, progress)
-   end subroutine show_progress
+      call write_line(line, self)
+   end subroutine taken_over
 
-   !> A text in the place of the line, as often as that. Nothing where the run is quiet.
-   subroutine show_line(text, progress)
-      character(*), intent(in) :: text
-      type(progress_t), intent(inout) :: progress
+   !> Shows an attempt that is not accepted, as often as that.
+   subroutine repeated(self, model, run, dt)
+      class(progress_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: dt
 
-      if (progress%quiet) return
       if (.not. to_terminal()) return
-      if (clock() - progress%last_line < PERIOD) return
-      progress%last_line = clock()
-      call write_line(text, progress)
-   end subroutine show_line
+      if (clock() - self%last_line < PERIOD) return
+      self%last_line = clock()
+      call write_line('Stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%state%time)// &
+                      ' s: a step of '//short(dt)//' s is repeated, cuts '//whole(run%cuts), self)
+   end subroutine repeated
+
+   !> Empties the line on the terminal, so that another can be written.
+   subroutine stage_ends(self, model, run, complete, fault)
+      class(progress_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => model, nor => run, neither => complete, never => fault)
+      end associate
+      if (self%standing > 0) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', self%standing)//achar(13)
+      self%standing = 0
+   end subroutine stage_ends
 
    !> A line in the place of the one before, as long as the terminal is wide: one that wraps could not be taken back.
    subroutine write_line(text, progress)
       character(*), intent(in) :: text
-      type(progress_t), intent(inout) :: progress
+      class(progress_observer_t), intent(inout) :: progress
       integer :: columns
 
       columns = min(len(text), max(1, terminal_width() - 1))
@@ -86,15 +112,6 @@ contains
       progress%standing = columns
       flush (output_unit)
    end subroutine write_line
-
-   !> Empties the line on the terminal, so that another can be written.
-   subroutine clear_progress(progress)
-      type(progress_t), intent(inout) :: progress
-
-      if (progress%standing > 0) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', progress%standing) &
-                                                                          //achar(13)
-      progress%standing = 0
-   end subroutine clear_progress
 
    !> Steps that the rest of a stage takes if none is cut: a geometric series up to the largest step.
    pure real(wp) function steps_left(stage, dt, time) result(steps)

@@ -6,8 +6,7 @@ module reaction_rows
    use kinds, only: wp
    use boundary_conditions, only: prescribing_fixes, forces_of_supports
    use csv, only: quoted
-   use contact_drainage, only: drainage_t
-   use generalised_alpha, only: scheme_t, make_scheme, STATIC
+   use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, factor_at
    use prescribed_values, only: constraint_t
    use scene_types, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
@@ -106,10 +105,9 @@ contains
 
    !> Row after a step. Forces hold where the step is in balance: at the level of its values. Times [s], forces [kN],
    !> flows [m3/s], in the order of reaction_columns: docs/theory/host.md section 9.1.
-   function reaction_row(model, stage, drainage, constraint, reaction, time, dt) result(row)
+   function reaction_row(model, stage, constraint, reaction, time, dt) result(row)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(drainage_t), intent(in) :: drainage
       type(constraint_t), intent(in) :: constraint
       real(wp), intent(in) :: reaction(:)   !< Residual with every row kept [kN, m3/s]. (unknowns)
       real(wp), intent(in) :: time, dt      !< At the end of the step, and its length [s].
@@ -142,10 +140,10 @@ contains
          integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i, k, group
          real(wp) :: w, a
 
-         call prescribing_fixes(model, stage, model%dofs, drainage, time, by, air_by)
+         call prescribing_fixes(model, stage, model%dofs, constraint, time, by, air_by)
          sums(:DISPLACEMENTS, :) = forces_of_supports(model, by, reaction)
          associate (dofs => model%dofs)
-            if (scheme%kind == STATIC .or. .not. model%domain%with_w) return
+            if (.not. scheme%has_rates .or. .not. model%domain%with_w) return
             do i = 1, size(air_by)
                if (dofs%of(AT_P_W, i) == 0) cycle
                w = reaction(dofs%of(AT_P_W, i))

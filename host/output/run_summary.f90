@@ -1,21 +1,26 @@
 ! SPDX-License-Identifier: MIT
-!> What a run says at its end: the largest value of every answer, the steps and what kept them short, the warnings
-!> again, and that errors are not known to it.
+!> Observer that says what came of a run: the largest value of every answer, the steps and what kept them
+!> short, the warnings again, and that errors are not known to it.
 module run_summary
+   use, intrinsic :: iso_fortran_env, only: output_unit
    use archive, only: archive_t
+   use faults, only: fault_t
    use kinds, only: wp
    use control_state, only: LIMITS, LIMIT_NAMES
    use model_types, only: model_t
    use named_points, only: unknowns_at
-   use porous_domain, only: state_t, UNDRAINED
+   use porous_domain, only: UNDRAINED
+   use run_cost, only: print_cost
+   use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
    use scene_types, only: point_t
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
+   use wall_clock, only: clock
    use warnings, only: repeat_warnings
    implicit none (type, external)
    private
-   public :: peaks_t, new_peaks, exchange_peaks, note_peaks, print_summary, counted
+   public :: summary_observer_t
 
    integer, parameter :: DIGITS_SAID = 3   !< Of a value; of a time as many as tell it from that of the step before.
 
@@ -25,46 +30,98 @@ module run_summary
    type :: peaks_t
       real(wp), allocatable :: value(:, :), time(:, :), dt(:, :)   !< (FIELDS, points) [m, kPa], [s], [s]
    end type peaks_t
+   type, extends(observer_t) :: summary_observer_t
+      logical :: quiet = .false.         !< Nothing is said of the answers.
+      logical :: verbose = .false.       !< What the run has cost is said.
+      real(wp) :: started = 0.0_wp       !< When the program began, on the wall clock [s].
+      type(peaks_t) :: peaks             !< Of the named points.
+   contains
+      procedure :: exchange
+      procedure :: begins
+      procedure :: taken_over
+      procedure :: stage_ends
+      procedure :: ends
+   end type summary_observer_t
 contains
-   !> Peaks before the first step.
-   pure function new_peaks(points) result(peaks)
-      integer, intent(in) :: points
-      type(peaks_t) :: peaks
-
-      allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
-   end function new_peaks
-
-   !> Exchanges peaks, made by new_peaks, with an archive.
-   subroutine exchange_peaks(peaks, archive)
-      type(peaks_t), intent(inout) :: peaks
+   !> Exchanges the largest values so far.
+   subroutine exchange(self, archive)
+      class(summary_observer_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
 
-      call archive%enter('peaks')
-      call archive%exchange('value', peaks%value, 'm, kPa', 'largest unknowns of the named points so far')
-      call archive%exchange('time', peaks%time, 's', 'times of these values')
-      call archive%exchange('dt', peaks%dt, 's', 'steps that led to these values')
-      call archive%leave('peaks')
-   end subroutine exchange_peaks
+      call archive%exchange_allocatable('peaks_value', self%peaks%value, 'm, kPa', &
+                                        'largest unknowns of the named points so far')
+      call archive%exchange_allocatable('peaks_time', self%peaks%time, 's', 'times of these values')
+      call archive%exchange_allocatable('peaks_dt', self%peaks%dt, 's', 'steps that led to these values')
+   end subroutine exchange
 
-   !> After every accepted step.
-   pure subroutine note_peaks(model, state, dt, peaks)
+   !> Peaks before the first step are zero.
+   subroutine begins(self, model, run, fault)
+      class(summary_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(state_t), intent(in) :: state
-      real(wp), intent(in) :: dt   !< Of the step [s].
-      type(peaks_t), intent(inout) :: peaks
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (never => fault)
+      end associate
+      if (run%steps > 0) return
+      associate (peaks => self%peaks, points => size(model%points))
+         allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
+      end associate
+   end subroutine begins
+
+   !> Notes the largest values.
+   subroutine taken_over(self, model, run, done, earlier, fault)
+      class(summary_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(in) :: done
+      type(slot_t), intent(inout) :: earlier(:)
+      type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS)
       integer :: i, f
 
+      associate (unused => earlier, never => fault)
+      end associate
       do i = 1, size(model%points)
-         x = unknowns_at(model%points(i), state%x)
+         x = unknowns_at(model%points(i), run%state%x)
          do f = 1, FIELDS
-            if (.not. abs(x(f)) > abs(peaks%value(f, i))) cycle
-            peaks%value(f, i) = x(f)
-            peaks%time(f, i) = state%time
-            peaks%dt(f, i) = dt
+            if (.not. abs(x(f)) > abs(self%peaks%value(f, i))) cycle
+            self%peaks%value(f, i) = x(f)
+            self%peaks%time(f, i) = run%state%time
+            self%peaks%dt(f, i) = done%scheme%dt
          end do
       end do
-   end subroutine note_peaks
+   end subroutine taken_over
+
+   !> Says how a stage went that has come to its end.
+   subroutine stage_ends(self, model, run, complete, fault)
+      class(summary_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+
+      associate (never => fault)
+      end associate
+      if (complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '// &
+         trim(model%stages(run%at%stage)%name)//': '//counted(run%at%step, 'step')//', time '// &
+         short(run%state%time)//' s, '//counted(run%iterations, 'linear solve')//' and '// &
+         counted(run%cuts, 'cut')//' so far.'
+   end subroutine stage_ends
+
+   !> Says what came of the run, and what it has cost.
+   subroutine ends(self, model, run, fault)
+      class(summary_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (never => fault)
+      end associate
+      if (run%steps == 0) return
+      if (.not. self%quiet) call print_summary(output_unit, model, run, self%peaks)
+      if (self%verbose) call print_cost(output_unit, model, run, clock() - self%started)
+   end subroutine ends
 
    !> The summary; nothing of answers that no step has changed, of steps where all are given.
    subroutine print_summary(unit, model, run, peaks)
@@ -76,7 +133,6 @@ contains
       real(wp) :: most(2)
       integer :: i, f
 
-      if (run%steps == 0) return
       most = [maxval([0.0_wp, abs(peaks%value(:DISPLACEMENTS, :))]), &
               maxval([0.0_wp, abs(peaks%value(DISPLACEMENTS + 1:, :))])]
       do i = 1, size(model%points)

@@ -1,74 +1,334 @@
 ! SPDX-License-Identifier: MIT
-!> Observer of a run: output, progress and checkpoints extend this type, so that the run itself writes nothing.
+!> Observers of a run: tables, fields, checkpoints, ledger, alarms and progress extend `observer_t` and stand in a list.
+!> The run tells the list what happens and knows none of them; each keeps what it needs, and exchanges with a
+!> checkpoint what a restart needs. An observer changes nothing that the run computes with.
 module run_observer
-   use kinds, only: wp
+   use archive, only: archive_t
+   use convergence, only: control_t, log_t
    use faults, only: fault_t
+   use generalised_alpha, only: scheme_t
+   use kinds, only: wp
    use model_types, only: model_t
-   use convergence, only: log_t
    use run_state, only: run_t
+   use wall_clock, only: clock, add_elapsed
    implicit none (type, external)
    private
-   public :: run_observer_t, step_report_t
+   public :: observer_t, observers_t, slot_t, accepted_step_t
 
    !> An accepted step.
-   type :: step_report_t
+   type :: accepted_step_t
       integer :: stage = 0                 !< Number of the stage.
-      real(wp) :: dt = 0.0_wp              !< [s]
+      type(scheme_t) :: scheme             !< It has the length of the step.
+      type(control_t) :: control           !< Limits of Newton's method in it.
+      type(log_t) :: log                   !< What Newton's method did.
       real(wp) :: error = 0.0_wp           !< Estimate of a controlled step's own, share of the change of its field [-].
-      real(wp), allocatable :: indicators(:)   !< Of effect_indicators.
       logical :: last = .false.            !< The stage ends with it.
-      type(log_t) :: log
-   end type step_report_t
+      real(wp) :: localised = 0.0_wp       !< Share of the shear work without ellipticity [-], set by its observer.
+      real(wp) :: contact_work = 0.0_wp    !< Work done on contacts so far [kJ], set by the ledger, which stands first.
+   end type accepted_step_t
 
-   type, abstract :: run_observer_t
-      logical :: silent = .false.          !< Nothing is said of what is seen, not even on standard error.
+   !> All procedures do nothing unless an observer has its own. A fault ends the run.
+   type, abstract :: observer_t
+      character(:), allocatable :: folder   !< Of the results; not allocated: no file is written.
    contains
-      procedure(run_i), deferred :: run_begins
-      procedure(step_i), deferred :: step_done
-      procedure(stage_i), deferred :: stage_done   !< Also after a failure.
-      procedure(run_i), deferred :: run_ends       !< Also after a failure.
-      procedure(warn_i), deferred :: warn
-   end type run_observer_t
+      procedure :: exchange       !< With a checkpoint.
+      procedure :: fits           !< Before a restart; changes nothing, and refuses what its files do not fit.
+      procedure :: begins         !< Before the first step; run%steps > 0 in a restart.
+      procedure :: stage_begins   !< Before a stage is prepared; its contacts act.
+      procedure :: step           !< After an accepted step: run%state before it, run%next after it.
+      procedure :: taken_over     !< Afterwards: run%state after it.
+      procedure :: repeated       !< After an attempt that is not accepted.
+      procedure :: stage_ends     !< Also where a fault has ended the run within it: not complete.
+      procedure :: ends           !< After the last step, also where the run has failed.
+   end type observer_t
 
-   abstract interface
-      !> Before the first step; after the last one, also where the run has failed.
-      subroutine run_i(self, model, run, fault)
-         import :: run_observer_t, model_t, run_t, fault_t
-         class(run_observer_t), intent(inout) :: self
-         type(model_t), intent(in) :: model
-         type(run_t), intent(in) :: run
-         type(fault_t), intent(inout) :: fault
-      end subroutine run_i
+   !> A place of the list.
+   type :: slot_t
+      class(observer_t), allocatable :: observer
+   end type slot_t
 
-      !> `checkpoint`: the run could be taken up from here, where there are no factors of an earlier matrix. Called
-      !> after an accepted step; a fault ends the run.
-      subroutine step_i(self, model, run, report, checkpoint, fault)
-         import :: run_observer_t, model_t, run_t, step_report_t, fault_t
-         class(run_observer_t), intent(inout) :: self
-         type(model_t), intent(in) :: model
-         type(run_t), intent(inout) :: run    !< Only to be kept: what a checkpoint writes it could also restore.
-         type(step_report_t), intent(in) :: report
-         logical, intent(out) :: checkpoint   !< For the run.
-         type(fault_t), intent(inout) :: fault
-      end subroutine step_i
+   !> The list of observers, which are told in its order.
+   type :: observers_t
+      character(:), allocatable :: folder   !< Of the results, for observers that are added.
+      type(slot_t), allocatable :: list(:)
+   contains
+      procedure :: add
+      procedure :: exchange_all
+      procedure :: check_fit
+      procedure :: begin_run
+      procedure :: begin_stage
+      procedure :: see_step
+      procedure :: see_taken_over
+      procedure :: see_repeated
+      procedure :: end_stage
+      procedure :: end_run
+   end type observers_t
+contains
+   !> Exchanges with a checkpoint what the observer needs to go on after a restart.
+   subroutine exchange(self, archive)
+      class(observer_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
 
-      !> After a stage; `complete`: it has come to its end. A fault ends the run, where none has ended it already.
-      subroutine stage_i(self, model, run, stage, complete, fault)
-         import :: run_observer_t, model_t, run_t, fault_t
-         class(run_observer_t), intent(inout) :: self
-         type(model_t), intent(in) :: model
-         type(run_t), intent(in) :: run
-         integer, intent(in) :: stage   !< Its number.
-         logical, intent(in) :: complete
-         type(fault_t), intent(inout) :: fault
-      end subroutine stage_i
+      associate (unused => self, neither => archive)
+      end associate
+   end subroutine exchange
 
-      !> Takes a warning, or a line that counts only while somebody watches the run.
-      subroutine warn_i(self, text, passing)
-         import :: run_observer_t
-         class(run_observer_t), intent(inout) :: self
-         character(*), intent(in) :: text
-         logical, intent(in), optional :: passing   !< True: such a line.
-      end subroutine warn_i
-   end interface
+   !> Refuses a restart that the observer's files do not fit; changes nothing. Faults are those of the observer.
+   subroutine fits(self, model, run, fault)
+      class(observer_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => self, nor => model, neither => run, never => fault)
+      end associate
+   end subroutine fits
+
+   !> Prepares the observer for the first step of this process. Faults are those of the observer.
+   subroutine begins(self, model, run, fault)
+      class(observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => self, nor => model, neither => run, never => fault)
+      end associate
+   end subroutine begins
+
+   !> Looks at the run before a stage is prepared; contacts may be probed.
+   subroutine stage_begins(self, model, run, number)
+      class(observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      integer, intent(in) :: number   !< Of the stage.
+
+      associate (unused => self, nor => model, neither => run, never => number)
+      end associate
+   end subroutine stage_begins
+
+   !> Looks at an accepted step that is not yet taken over; contacts may be probed. A fault ends the run once all have
+   !> seen the step taken over.
+   subroutine step(self, model, run, done, fault)
+      class(observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => self, nor => model, neither => run, not => done, never => fault)
+      end associate
+   end subroutine step
+
+   !> Looks at an accepted step that is taken over. A checkpoint exchanges the run and the observers before it in the
+   !> list, and takes the factors from the run, which a restart does not have. Faults are those of the observer.
+   subroutine taken_over(self, model, run, done, earlier, fault)
+      class(observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(in) :: done
+      type(slot_t), intent(inout) :: earlier(:)   !< Observers before this one.
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => self, nor => model, neither => run, not => done, none => earlier, never => fault)
+      end associate
+   end subroutine taken_over
+
+   !> Looks at a run whose last attempt at a step was not accepted.
+   subroutine repeated(self, model, run, dt)
+      class(observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: dt   !< Length of the attempt [s].
+
+      associate (unused => self, nor => model, neither => run, never => dt)
+      end associate
+   end subroutine repeated
+
+   !> Looks at a run at the end of the stage run%at%stage. Faults are those of the observer.
+   subroutine stage_ends(self, model, run, complete, fault)
+      class(observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: complete   !< The stage has come to its end.
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => self, nor => model, neither => run, not => complete, never => fault)
+      end associate
+   end subroutine stage_ends
+
+   !> Ends the work of the observer. Faults are those of the observer.
+   subroutine ends(self, model, run, fault)
+      class(observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => self, nor => model, neither => run, never => fault)
+      end associate
+   end subroutine ends
+
+   !> Puts an observer at the end of the list.
+   subroutine add(self, observer)
+      class(observers_t), intent(inout) :: self
+      class(observer_t), intent(in) :: observer
+      type(slot_t), allocatable :: longer(:)
+      integer :: i, n
+
+      n = 0
+      if (allocated(self%list)) n = size(self%list)
+      allocate (longer(n + 1))
+      do i = 1, n
+         call move_alloc(self%list(i)%observer, longer(i)%observer)
+      end do
+      allocate (longer(n + 1)%observer, source=observer)
+      if (allocated(self%folder)) longer(n + 1)%observer%folder = self%folder
+      call move_alloc(longer, self%list)
+   end subroutine add
+
+   !> Exchanges with an archive what observers keep.
+   subroutine exchange_all(self, archive)
+      class(observers_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      integer :: i
+
+      do i = 1, size(self%list)
+         call self%list(i)%observer%exchange(archive)
+      end do
+   end subroutine exchange_all
+
+   !> Whether a restart fits what every observer has written; changes nothing. Faults are those of the observers.
+   subroutine check_fit(self, model, run, fault)
+      class(observers_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      do i = 1, size(self%list)
+         if (fault%code == 0) call self%list(i)%observer%fits(model, run, fault)
+      end do
+   end subroutine check_fit
+
+   !> Tells all that the run begins. Where one raises a fault the run does not begin: those before it are told its end.
+   subroutine begin_run(self, model, run, fault)
+      class(observers_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(fault_t) :: other
+      real(wp) :: t0
+      integer :: i, k
+
+      t0 = clock()
+      if (run%steps > 0) call self%check_fit(model, run, fault)
+      if (fault%code /= 0) return
+      do i = 1, size(self%list)
+         call self%list(i)%observer%begins(model, run, fault)
+         if (fault%code == 0) cycle
+         do k = i - 1, 1, -1
+            call self%list(k)%observer%ends(model, run, other)
+         end do
+         return
+      end do
+      call add_elapsed(run%seconds_output, t0)
+   end subroutine begin_run
+
+   !> Tells all that a stage begins.
+   subroutine begin_stage(self, model, run, number)
+      class(observers_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      integer, intent(in) :: number   !< Of the stage.
+      integer :: i
+
+      do i = 1, size(self%list)
+         call self%list(i)%observer%stage_begins(model, run, number)
+      end do
+   end subroutine begin_stage
+
+   !> Shows all an accepted step that is not yet taken over. A fault ends the run after see_taken_over: the
+   !> first one.
+   subroutine see_step(self, model, run, done, fault)
+      class(observers_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+      type(fault_t) :: one
+      integer :: i
+
+      do i = 1, size(self%list)
+         one = fault_t()
+         call self%list(i)%observer%step(model, run, done, one)
+         if (fault%code == 0) fault = one
+      end do
+   end subroutine see_step
+
+   !> Shows an accepted step that is taken over, up to the first fault: after a row that cannot be written there is no
+   !> checkpoint.
+   subroutine see_taken_over(self, model, run, done, fault)
+      class(observers_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(in) :: done
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: t0
+      integer :: i
+
+      t0 = clock()
+      do i = 1, size(self%list)
+         if (fault%code == 0) call self%list(i)%observer%taken_over(model, run, done, self%list(:i - 1), fault)
+      end do
+      call add_elapsed(run%seconds_output, t0)
+   end subroutine see_taken_over
+
+   !> Tells all that an attempt at a step of length dt [s] was not accepted.
+   subroutine see_repeated(self, model, run, dt)
+      class(observers_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: dt
+      integer :: i
+
+      do i = 1, size(self%list)
+         call self%list(i)%observer%repeated(model, run, dt)
+      end do
+   end subroutine see_repeated
+
+   !> Tells all that a stage has ended, or the run within it where there is a fault already, which then stays.
+   subroutine end_stage(self, model, run, fault)
+      class(observers_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(fault_t) :: one
+      logical :: complete
+      real(wp) :: t0
+      integer :: i
+
+      t0 = clock()
+      complete = fault%code == 0
+      do i = 1, size(self%list)
+         one = fault_t()
+         call self%list(i)%observer%stage_ends(model, run, complete, one)
+         if (fault%code == 0) fault = one
+      end do
+      call add_elapsed(run%seconds_output, t0)
+   end subroutine end_stage
+
+   !> Tells all that the run has ended, in the reverse order; a fault that there is already stays.
+   subroutine end_run(self, model, run, fault)
+      class(observers_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+      type(fault_t) :: one
+      integer :: i
+
+      do i = size(self%list), 1, -1
+         one = fault_t()
+         call self%list(i)%observer%ends(model, run, one)
+         if (fault%code == 0) fault = one
+      end do
+   end subroutine end_run
 end module run_observer

@@ -4,7 +4,6 @@ module run_setup
    use kinds, only: wp
    use faults, only: fault_t, raise
    use boundary_conditions, only: new_constraint
-   use contact_drainage, only: prepare_drainage
    use contact_setup, only: prepare_contacts, place_heavy_plates
    use equation_assembly, only: make_assembly, assemble
    use exit_codes, only: EXIT_MATERIAL
@@ -20,7 +19,7 @@ module run_setup
    public :: prepare_run
 contains
    !> A run at its start; a fault where the initial state is refused. Faults: those of initial_state, prepare_contacts,
-   !> prepare_drainage, keep_flow and the terms.
+   !> keep_flow and the terms.
    subroutine prepare_run(model, run, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(out) :: run
@@ -34,15 +33,12 @@ contains
       run%constraint = new_constraint(model, model%dofs)
       call initial_state(model, run%state, fault, run%tension)
       if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
-      if (fault%code == 0) call prepare_drainage(model, run%drainage, fault)
       if (fault%code == 0) call place_heavy_plates(model, run%system%contacts, run%state)
       run%terms = model%terms
       do i = 1, size(run%terms)
          if (fault%code == 0) call run%terms(i)%term%begin_run(model, run%solution_t, fault)
       end do
       run%next = run%state
-      if (any(model%domain%regions%stiffness_damping > 0.0_wp)) &
-         allocate (run%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
    end subroutine prepare_run
 

@@ -4,36 +4,25 @@ module run_state
    use, intrinsic :: iso_fortran_env, only: int64
    use archive, only: archive_t
    use kinds, only: wp
-   use contact_drainage, only: drainage_t
    use contact_interfaces, only: exchange_contacts
    use control_state, only: control_state_t, new_control_state, exchange_control
-   use energy_ledger, only: ledger_t, exchange_ledger
    use initial_conditions, only: tension_t
    use model_types, only: model_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
-   use pressure_alarm, only: lines_t
    use solution, only: solution_t, stage_state_t
    use sparsity_pattern, only: make_pattern
-   use water_balance, only: water_t
    implicit none (type, external)
    private
    public :: run_t, exchange_run
 
    type, extends(solution_t) :: run_t
       type(term_box_t), allocatable :: terms(:)   !< Those of the model, with what they keep from step to step.
-      type(drainage_t) :: drainage
-      type(ledger_t) :: ledger
-      !> (4, points) Stress of the damping in proportion to the stiffness, for the ledger; where a region has it [kPa].
-      real(wp), allocatable :: damping_stress(:, :)
       type(tension_t) :: tension               !< Of the initial state, for a warning.
       type(control_state_t) :: control         !< Of the time step, in stages that choose it.
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Of the material.
-      ! Warnings that are said once.
-      type(water_t) :: water                   !< Of the stage under way.
-      type(lines_t) :: lines                   !< Of the mesh, for the first of them.
-      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false.
-      real(wp) :: seconds_output = 0.0_wp      !< Wall time.
+      real(wp) :: dissipated = 0.0_wp          !< Energy that terms dissipated in the last accepted step [kJ].
+      real(wp) :: seconds_output = 0.0_wp      !< Wall time of the observers.
    end type run_t
 contains
    !> Exchanges a prepared run with an archive, between two steps. What is restored goes on to the last digit: loads,
@@ -46,21 +35,18 @@ contains
       integer :: i
 
       call exchange_stage_state(size(model%stages), run%at, archive)
-      call archive%exchange('steps', run%steps, '-', 'steps', least=0)
+      call archive%exchange('steps', run%steps, '-', 'steps', least=1)
       call archive%exchange('iterations', run%iterations, '-', 'linear solves', least=0)
       call archive%exchange('cuts', run%cuts, '-', 'cuts', least=0)
       call archive%exchange('rate_evaluations', run%rate_evaluations, '-', 'rate evaluations of the material')
       call exchange_state(model%domain, run%state, archive)
       call archive%exchange('largest', run%system%largest, 'kN', 'largest scale of every field')
-      if (allocated(run%damping_stress)) call archive%exchange('damping_stress', run%damping_stress, 'kPa', &
-         'stress of the damping in proportion to the stiffness')
       do i = 1, size(run%terms)
          call run%terms(i)%term%exchange(run%solution_t, archive)
       end do
       if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
                                                            size(model%contacts))
       call exchange_control(run%control, archive)
-      call exchange_ledger(run%ledger, archive)
       call exchange_contacts(model%dofs, run%system%contacts, archive)
       if (.not. archive%reading .or. .not. archive%is_intact()) return
       run%state%gravity = gravity_at(model, run%state%time)

@@ -11,7 +11,7 @@ module start_balance
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
    use run_state, only: run_t
-   use scene_types, only: acts_in
+   use scene_types, only: acts_in, load_t, LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_U_Z, AT_P_W
    implicit none (type, external)
    private
@@ -29,7 +29,7 @@ contains
       type(balance_t), intent(out) :: balance
       type(run_t) :: trial
       real(wp), allocatable :: forces(:), touched(:)
-      real(wp) :: areas(2*DISPLACEMENTS, model%dofs%n), stress(model%dofs%n), unbalanced(model%dofs%n), least
+      real(wp) :: areas(2*DISPLACEMENTS, model%dofs%n), stress(model%dofs%n), unbalanced(model%dofs%n), least, standing
       integer :: i
 
       trial = run
@@ -38,19 +38,18 @@ contains
       trial%next = trial%state
       if (allocated(trial%system%contacts%interfaces)) &
          trial%system%contacts%interfaces(:size(model%contacts))%acts = .false.
-      if (.not. unbalanced_forces(model%domain, model%dofs, trial%pattern, trial%constraint, trial%state, trial%next, &
-                                  trial%assembly, trial%system, forces)) return
+      if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, forces)) return
       where (abs(forces) < ROUNDING*trial%assembly%scale) forces = 0.0_wp
       touched = 0*forces
       if (allocated(trial%system%contacts%interfaces)) then
          call contacts_act(model, model%stages(1), trial%system%contacts)
-         if (.not. unbalanced_forces(model%domain, model%dofs, trial%pattern, trial%constraint, trial%state, &
-                                     trial%next, trial%assembly, trial%system, touched)) return
+         if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, touched)) return
          touched = touched - forces
       end if
+      call add_weight_of_water(model, run, forces, standing)
       call let_go_of_held(model, forces)
-      call add_carried_loads(model, touched, forces)
-      call look_around(model, run, areas, stress)
+      call add_carried_loads(model, run, touched, forces)
+      call look_around(model, run, standing, areas, stress)
       unbalanced = 0.0_wp
       do i = 1, size(forces)
          if (abs(forces(i)) > 0.0_wp .and. any(areas(:, i) > 0.0_wp)) unbalanced(i) = abs(forces(i))/maxval(areas(:, i))
@@ -66,6 +65,60 @@ contains
       balance%there = stress(i)
       balance%x = model%domain%mesh%x(:, model%dofs%node(i))
    end subroutine find_imbalance
+
+   !> Adds the pressures at time 0 that are those of the water at their edges: water that stands there did so before.
+   subroutine add_weight_of_water(model, run, forces, most)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
+      real(wp), intent(out) :: most          !< The largest of them [kPa].
+      integer :: i
+
+      most = 0.0_wp
+      do i = 1, size(model%loads)
+         if (.not. water_in(model, run, model%loads(i)) > 0.0_wp) cycle
+         forces = forces + load_at_start(model, model%loads(i))
+         most = max(most, water_in(model, run, model%loads(i)))
+      end do
+   end subroutine add_weight_of_water
+
+   !> Largest pressure of a load of the first stage that is at time 0 that of the pore water wherever it acts, else 0
+   !> [kPa].
+   real(wp) function water_in(model, run, load) result(most)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(load_t), intent(in) :: load
+      real(wp) :: given, p_w
+      integer :: k, i
+
+      most = 0.0_wp
+      if (load%kind /= LOAD_PRESSURE .or. .not. acts_in(load%stages, model%stages(1)%name)) return
+      associate (x => model%domain%mesh%x, edges => model%domain%mesh%groups(load%group)%edges)
+         do k = 1, size(edges, 2)
+            do i = 1, 2
+               given = factor_at(model, load%amplitude, 0.0_wp)*(load%value &
+                                                                + load%value_slope*(x(2, edges(i, k)) - load%datum))
+               p_w = run%state%x(AT_P_W, edges(i, k))
+               if (abs(given - p_w) > SMALL*max(given, p_w)) then
+                  most = 0.0_wp
+                  return
+               end if
+               most = max(most, p_w)
+            end do
+         end do
+      end associate
+   end function water_in
+
+   !> Forces of a load at time 0 [kN]. (unknowns)
+   function load_at_start(model, load) result(forces)
+      type(model_t), intent(in) :: model
+      type(load_t), intent(in) :: load
+      real(wp) :: forces(model%dofs%n)
+
+      forces = load%value*load%shape
+      if (allocated(load%rise)) forces = forces + load%value_slope*load%rise
+      forces = factor_at(model, load%amplitude, 0.0_wp)*forces
+   end function load_at_start
 
    !> Supports and dashpots of the first stage hold what they have, rigid bodies stand on their contacts.
    subroutine let_go_of_held(model, forces)
@@ -100,8 +153,9 @@ contains
    end subroutine let_go_of_held
 
    !> Adds what contacts press with, and every load at time 0, that leaves less without balance.
-   subroutine add_carried_loads(model, touched, forces)
+   subroutine add_carried_loads(model, run, touched, forces)
       type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
       real(wp), intent(in) :: touched(:)     !< (unknowns) Of contacts [kN].
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
       real(wp) :: load(size(forces)), loads(3)
@@ -110,10 +164,8 @@ contains
       call carry(touched)
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (.not. acts_in(one%stages, model%stages(1)%name)) cycle
-            load = one%value*one%shape
-            if (allocated(one%rise)) load = load + one%value_slope*one%rise
-            call carry(factor_at(model, one%amplitude, 0.0_wp)*load)
+            if (.not. acts_in(one%stages, model%stages(1)%name) .or. water_in(model, run, one) > 0.0_wp) cycle
+            call carry(load_at_start(model, one))
          end associate
       end do
       do i = 1, size(model%plates)
@@ -136,10 +188,12 @@ contains
    end subroutine add_carried_loads
 
    !> For every displacement the area that a stress on one side of its nodes acts on with it, along r and z, from either
-   !> side; and the largest total normal stress around it [kPa].
-   subroutine look_around(model, run, areas, stress)
+   !> side; and the largest total normal stress around it, less that of water on the ground; 0 without effective
+   !> stress [kPa].
+   subroutine look_around(model, run, standing, areas, stress)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
+      real(wp), intent(in) :: standing                  !< Pressure of the water on the ground [kPa].
       real(wp), intent(out) :: areas(:, :), stress(:)   !< (4, unknowns) [m2], (unknowns)
       real(wp) :: part(2*DISPLACEMENTS), pressures(2), total
       integer :: e, g, k, f, p, at
@@ -152,7 +206,10 @@ contains
             do g = 1, m%rule
                p = (e - 1)*m%rule + g
                pressures = pressures_at(m, e, g, run%state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
-               total = maxval(abs(run%state%stress(1:3, p) - pressures(1) - (1 - run%state%s(p))*pressures(2)))
+               ! Below a lake the total stress is large anywhere, and water alone bears nothing.
+               total = maxval(abs(run%state%stress(1:3, p) - pressures(1) - (1 - run%state%s(p))*pressures(2) &
+                                  + standing))
+               if (.not. any(abs(run%state%stress(1:3, p)) > 0.0_wp)) total = 0.0_wp
                do k = 1, 6
                   associate (gp => m%gauss(g, e))
                      part = gp%weight*[max(0.0_wp, gp%dn(k, :)), max(0.0_wp, -gp%dn(k, :))]

@@ -3,15 +3,10 @@
 !> docs/theory/host.md section 4.4.
 module step_attempt
    use kinds, only: wp
-   use exit_codes, only: EXIT_CONVERGENCE
-   use faults, only: fault_t, raise
+   use faults, only: fault_t
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at, rain_at
-   use contact_drainage, only: find_impervious_nodes
-   use contact_interfaces, only: begin_friction
-   use contact_types, only: contact_message
    use convergence, only: control_t, log_t
-   use energy_ledger, only: kinetic_energy
    use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
    use given_pressures, only: follow_undrained
@@ -49,9 +44,6 @@ contains
          if (fault%code /= 0) return
          call begin_control(model, stage, run)
          if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
-         if (fault%code /= 0) return
-         run%ledger%kinetic_0 = run%ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
-                                                                      run%state) - run%ledger%kinetic
       end associate
    end subroutine begin_stage
 
@@ -105,14 +97,12 @@ contains
       scheme = scheme_of(stage, run, dt)
       if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, model%dofs, scheme, run%state, &
                                                                   run%constraint)
-      call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
-                     run%assembly, run%system, log)
+      call take_step(model%domain, model%dofs, scheme, control, run%solution_t, log)
       if (log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
          a0 = run%state%a
          run%state%a = 0.0_wp
-         call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
-                        run%assembly, run%system, log)
+         call take_step(model%domain, model%dofs, scheme, control, run%solution_t, log)
          if (log%outcome /= CONVERGED) run%state%a = a0
       end if
       run%iterations = run%iterations + log%iterations
@@ -151,11 +141,11 @@ contains
    subroutine spread_sudden_loads(model, run)
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
+      real(wp), allocatable :: forces(:)
 
       call copy_state(run%state, run%next)
       run%next%gravity = gravity_at(model, run%state%time)
-      if (.not. unbalanced_forces(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
-                                  run%assembly, run%system, run%at%sudden)) deallocate (run%at%sudden)
+      if (unbalanced_forces(model%domain, model%dofs, run%solution_t, forces)) call move_alloc(forces, run%at%sudden)
    end subroutine spread_sudden_loads
 
    !> Shorter steps do not come to an end, or do not move the time [s].
@@ -174,7 +164,6 @@ contains
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      character(400) :: text
       integer :: i
 
       associate (c => run%constraint, until => run%state%time + dt)
@@ -191,14 +180,7 @@ contains
             c%load_1 = c%load_1 - (1 - run%at%share_of(stage%duration, until))*run%at%sudden
          end if
       end associate
-      call find_impervious_nodes(model, run%drainage, run%system%contacts, run%state%x, fault)
-      if (fault%code /= 0) return
-      if (.not. begin_friction(run%system%contacts, run%state%x)) then
-         call contact_message(run%system%contacts%status, text)
-         call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//trim(text)//'.')
-         return
-      end if
-      call constrain_step(model, stage, model%dofs, run%drainage, run%state%time + dt, run%at%x_start, run%constraint)
+      call constrain_step(model, stage, model%dofs, run%state%time + dt, run%at%x_start, run%constraint)
       do i = 1, size(run%terms)
          call run%terms(i)%term%prescribe(model, run%state%time + dt, run%solution_t)
       end do
@@ -217,8 +199,7 @@ contains
          call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
                                      run%state%time, run%constraint%acceleration)
       end if
-      call start_accelerations(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
-                               run%assembly, run%system, log)
+      call start_accelerations(model%domain, model%dofs, run%solution_t, log)
       if (log%outcome /= CONVERGED) call explain_failure(model, stage, run, log, run%state%time, 0.0_wp, fault)
    end subroutine first_accelerations
 end module step_attempt

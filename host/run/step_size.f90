@@ -7,7 +7,7 @@ module step_size
    use contact_landings, only: closed_contacts, ends_at_closing, end_where_it_closes
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
    use error_norms, only: shift_rates, local_errors, remember, forget, rms
-   use generalised_alpha, only: make_scheme, scheme_t, STATIC, QUASI_STATIC, DYNAMIC
+   use generalised_alpha, only: make_scheme, scheme_t, has_rates, has_inertia, is_flow
    use model_types, only: model_t
    use run_state, only: run_t
    use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
@@ -50,7 +50,7 @@ contains
          c%controller = new_controller(first_step(model, stage, run))
          c%start_up = START_UP_STEPS*c%controller%dt
          ! What moves already and meets something errs in the first step as in any later one.
-         if (stage%kind == DYNAMIC .and. any(abs(run%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) c%start_up = 0.0_wp
+         if (has_inertia(stage%kind) .and. any(abs(run%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) c%start_up = 0.0_wp
       end associate
    end subroutine begin_control
 
@@ -64,25 +64,24 @@ contains
       span = next_time(model, stage, run, stage%duration) - run%state%time
       ! Nothing tells of the error of the first step of a flow: that of the scene may be shorter than what the tolerance
       ! asks for, or the whole stage, not between.
-      if (stage%dt > 0.0_wp .and. .not. (stage%kind == QUASI_STATIC .and. stage%dt < span)) then
+      if (stage%dt > 0.0_wp .and. .not. (is_flow(stage%kind) .and. stage%dt < span)) then
          dt = min(stage%dt, stage%dt_max)
          return
       end if
-      select case (stage%kind)
-      case (STATIC)
+      if (.not. has_rates(stage%kind)) then
          ! The answer of a material with a memory depends on the way there; nothing tells of the error of a single step.
          dt = span
          if (depends_on_path(model) .and. changes_within(model, run%state%time, run%state%time + stage%duration)) &
             dt = span*min(FIRST_STATIC, max(stage%step_tolerance, SHORTEST))
-      case (QUASI_STATIC)
+      else if (is_flow(stage%kind)) then
          ! What a load leaves at once flows off with the root of time. Where nothing is sudden a step that short would
          ! drown what it changes in rounding.
          dt = span*min(0.01_wp, max(merge(stage%step_tolerance**2, stage%step_tolerance, begins_suddenly(model, run)), &
                                     SHORTEST))
-      case default
+      else
          ! Nothing is there yet to compare its error with; what begins from rest grows with the square of time.
          dt = span*FIRST_SHARE*sqrt(stage%step_tolerance)
-      end select
+      end if
       if (stage%dt > 0.0_wp) dt = min(dt, stage%dt)
       dt = min(dt, stage%dt_max)
    end function first_step
@@ -176,7 +175,7 @@ contains
       logical :: begins
 
       begins = run%at%step == 0 .or. (stage%controlled .and. run%control%fresh == 0)
-      scheme = make_scheme(stage%kind, stage%rho_inf, dt, stage%kind == QUASI_STATIC .and. begins)
+      scheme = make_scheme(stage%kind, stage%rho_inf, dt, is_flow(stage%kind) .and. begins)
    end function scheme_of
 
    !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5; where
@@ -207,7 +206,7 @@ contains
          c%error = 0.0_wp
          if (stage%controlled) then
             touching = c%touching
-            if (stage%kind == DYNAMIC) touching = closed_contacts(run, run%next%x)
+            if (has_inertia(stage%kind)) touching = closed_contacts(run, run%next%x)
             closes = any(touching > c%touching)
             if (closes) accepted = ends_at_closing(stage, dt, run)
             if (.not. accepted) return
@@ -234,7 +233,7 @@ contains
       logical, intent(out) :: known(FIELDS)
 
       associate (c => run%control)
-         if (stage%kind == STATIC .and. .not. depends_on_path(model)) then
+         if (.not. has_rates(stage%kind) .and. .not. depends_on_path(model)) then
             ! Without a memory and without a flow the answer does not depend on the steps.
             error = 0.0_wp
             known = .true.
@@ -242,7 +241,7 @@ contains
          end if
          call local_errors(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, &
                            run%state%a, run%next%x, run%next%v, run%next%a, error, known)
-         if (stage%kind == QUASI_STATIC .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(dt, run)
+         if (is_flow(stage%kind) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(dt, run)
          ! Saturated soil holds no air and has no suction: its number follows no balance that holds it, and rings.
          where (run%state%x(AT_P_C, :) < 0.0_wp .and. run%next%x(AT_P_C, :) < 0.0_wp) error(AT_P_C, :) = 0.0_wp
       end associate
@@ -375,7 +374,7 @@ contains
          run%state%s_rate = run%control%memory%base_s_rate
       end if
       ! The rate of a static step before holds still; a flow may have failed where something begins.
-      if (stage%kind /= STATIC) call forget(run%control%memory)
+      if (has_rates(stage%kind)) call forget(run%control%memory)
       run%at%factor = 1.0_wp
    end subroutine shorten_step
 
@@ -389,13 +388,13 @@ contains
       logical :: breaks
 
       if (.not. stage%controlled) return
-      breaks = stage%kind /= DYNAMIC .and. is_break(model, stage, run%next%time, dt)
+      breaks = .not. has_inertia(stage%kind) .and. is_break(model, stage, run%next%time, dt)
       associate (c => run%control)
          call remember(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%next%x, run%state%v, &
                        run%state%s_rate)
          c%fresh = c%fresh + 1
          ! A first static step may have taken at once what acts from the start: its rate is none.
-         if (c%fresh < merge(2, SETTLED, stage%kind == STATIC)) c%memory%known = .false.
+         if (c%fresh < merge(2, SETTLED, .not. has_rates(stage%kind))) c%memory%known = .false.
          run%at%cuts = max(0, run%at%cuts - 1)
          run%at%nominal = c%controller%dt
          if (.not. breaks) return

@@ -3,9 +3,9 @@
 module effect_names
    implicit none (type, external)
    private
-   public :: EFFECTS, EFFECT_WORDS
-   public :: OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, OF_ABSORBING, OF_DRAINAGE, &
-             OF_LIMITS, OF_FRICTION, OF_STRENGTH, OF_VOID_RATIO, OF_HYSTERESIS, OF_ELASTIC_DOMAIN
+   public :: EFFECTS, EFFECT_WORDS, term_switch_t, TERM_SWITCHES
+   public :: OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, OF_LIMITS, OF_VOID_RATIO, &
+             OF_HYSTERESIS, OF_ELASTIC_DOMAIN
 
    integer, parameter :: NAMES = 20, LENGTH = 26
    integer, parameter :: OF_INERTIA = 1, OF_SEEPAGE = 2, OF_P_W = 3, OF_P_C = 4, OF_GRAVITY = 5, OF_CONTACT = 6, &
@@ -16,6 +16,22 @@ module effect_names
       'relative_acceleration', 'p_w', 'p_c', 'gravity', 'contact', 'damping', 'absorbing', 'contact_drainage', &
       'seepage_face', 'friction', 'strength', 'void_ratio_in_retention', 'hysteresis', 'bonding', 'fabric', &
       'isotropic', 'lode', 'memory_rule', 'elastic_domain']
+   !> Terms go with the groups, or the keys of groups, that ask for them.
+   type :: term_switch_t
+      integer :: effect
+      character(12) :: group
+      character(12) :: key    !< Empty: the groups themselves.
+      character(8) :: none    !< Value of the key without the term.
+      logical :: wet = .false.   !< It is about pore water, and goes with it.
+   end type term_switch_t
+
+   type(term_switch_t), parameter :: TERM_SWITCHES(*) = [ &
+      term_switch_t(OF_ABSORBING, 'absorbing', '', ''), &
+      term_switch_t(OF_DRAINAGE, 'contact', 'drainage', 'fixed', wet=.true.), &
+      term_switch_t(OF_FRICTION, 'contact', 'friction', '0'), &
+      term_switch_t(OF_FRICTION, 'contact', 'cohesion', '0'), &
+      term_switch_t(OF_STRENGTH, 'strength', '', '')]
+
    !> The same as one list of words.
    character(*), parameter :: EFFECT_WORDS = &
       trim(EFFECTS(1))//'|'//trim(EFFECTS(2))//'|'//trim(EFFECTS(3))//'|'//trim(EFFECTS(4))//'|'// &

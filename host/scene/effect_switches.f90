@@ -4,13 +4,15 @@
 module effect_switches
    use kinds, only: wp
    use effect_names, only: EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, &
-      OF_ABSORBING, OF_DRAINAGE, OF_LIMITS, OF_FRICTION, OF_STRENGTH, OF_VOID_RATIO, OF_HYSTERESIS, OF_ELASTIC_DOMAIN
+      OF_LIMITS, OF_VOID_RATIO, OF_HYSTERESIS, OF_ELASTIC_DOMAIN, term_switch_t, TERM_SWITCHES
    use faults, only: fault_t, raise, EXIT_INPUT
+   use key_schema, only: get_text, given
    use library_tables, only: property_index
-   use namelists, only: set_entry
+   use namelists, only: set_entry, LENGTH
    use parameter_groups, only: read_parameters
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, LOAD_WATER, LOAD_RAIN, &
                           LOAD_AIR
+   use texts, only: lower_case, read_number
    use generalised_alpha, only: QUASI_STATIC, DYNAMIC
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
@@ -42,20 +44,17 @@ contains
       case (OF_CONTACT)
          present = size(scene%contacts) > 0
       case (OF_DAMPING)
-         present = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
-      case (OF_DRAINAGE)
-         present = any(scene%contacts%drains_by_state)
+         present = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp .or. &
+                       scene%regions%viscosity > 0.0_wp)
       case (OF_LIMITS)
          present = scene%fields /= WITH_U .and. (any(scene%fixes%limits) .or. any(scene%loads%kind == LOAD_RAIN))
-      case (OF_FRICTION)
-         present = any(scene%contacts%options%friction > 0.0_wp .or. scene%contacts%options%cohesion > 0.0_wp)
-      case (OF_ABSORBING, OF_STRENGTH)
-         ! Groups of the name of the effect.
-         present = any(scene%groups%name == EFFECTS(effect))
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
       case default
+         present = any([(is_said(scene, TERM_SWITCHES(i)), i=1, size(TERM_SWITCHES))] .and. &
+                       TERM_SWITCHES%effect == effect)
+         if (any(TERM_SWITCHES%effect == effect)) return
          present = any([(parameter_of(scene, i, trim(SWITCHES(effect))) > 0.0_wp, i=1, size(scene%materials))])
       end select
    end function is_present
@@ -83,6 +82,7 @@ contains
       type(scene_t), intent(inout) :: scene
       integer, intent(in) :: effect        !< One of OF_...
       character(*), intent(out) :: why     !< Why it cannot be; empty if it could.
+      integer :: i
 
       why = ''
       select case (effect)
@@ -95,8 +95,10 @@ contains
          call drop_field(scene, AT_P_W, LOAD_WATER)
          scene%fields = WITH_U
          scene%seepage_inertia = .false.
-         if (size(scene%contacts) > 0) scene%contacts%drains_by_state = .false.
          if (size(scene%ties) > 0) scene%ties%pressures = .false.
+         do i = 1, size(TERM_SWITCHES)
+            if (TERM_SWITCHES(i)%wet) call unsay(scene, TERM_SWITCHES(i))
+         end do
       case (OF_P_C)
          why = water_given_by_others(scene)
          if (why /= '') return
@@ -111,21 +113,18 @@ contains
       case (OF_DAMPING)
          scene%regions%damping = 0.0_wp
          scene%regions%stiffness_damping = 0.0_wp
-      case (OF_DRAINAGE)
-         scene%contacts%drains_by_state = .false.
+         scene%regions%viscosity = 0.0_wp
       case (OF_LIMITS)
          ! The limit is prescribed, and all rain flows in.
          scene%fixes%limits = .false.
          where (scene%loads%kind == LOAD_RAIN) scene%loads%kind = LOAD_WATER
-      case (OF_FRICTION)
-         scene%contacts%options%friction = 0.0_wp
-         scene%contacts%options%cohesion = 0.0_wp
-      case (OF_ABSORBING, OF_STRENGTH)
-         scene%kept = scene%kept .and. scene%groups%name /= EFFECTS(effect)
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
       case default
-         call switch_off(scene, trim(SWITCHES(effect)))
+         do i = 1, size(TERM_SWITCHES)
+            if (TERM_SWITCHES(i)%effect == effect) call unsay(scene, TERM_SWITCHES(i))
+         end do
+         if (all(TERM_SWITCHES%effect /= effect)) call switch_off(scene, trim(SWITCHES(effect)))
       end select
    end subroutine remove
 
@@ -153,6 +152,39 @@ contains
       scene%fixes = pack(scene%fixes, scene%fixes%field < first_field)
       scene%loads = pack(scene%loads, scene%loads%kind < first_load .or. scene%loads%kind > LOAD_AIR)
    end subroutine drop_field
+
+   !> Whether the scene asks for a term by a group or key: a key says something else than that there is none.
+   logical function is_said(scene, switch)
+      type(scene_t), intent(in) :: scene
+      type(term_switch_t), intent(in) :: switch
+      character(LENGTH) :: value
+      real(wp) :: number
+      logical :: good
+      integer :: i
+
+      is_said = .false.
+      do i = 1, size(scene%groups)
+         if (scene%groups(i)%name /= switch%group) cycle
+         value = switch%none
+         call get_text(scene%groups(i), switch%key, value)
+         call read_number(value, number, good)
+         is_said = is_said .or. switch%key == '' .or. &
+                   merge(abs(number) > 0.0_wp, lower_case(value) /= switch%none, good)
+      end do
+   end function is_said
+
+   !> Takes the groups of a term out, or lets their key say that there is none.
+   subroutine unsay(scene, switch)
+      type(scene_t), intent(inout) :: scene
+      type(term_switch_t), intent(in) :: switch
+      integer :: i
+
+      do i = 1, size(scene%groups)
+         if (scene%groups(i)%name /= switch%group) cycle
+         if (switch%key == '') scene%kept(i) = .false.
+         if (given(scene%groups(i), switch%key)) call set_entry(scene%groups(i), switch%key, trim(switch%none))
+      end do
+   end subroutine unsay
 
    !> A switch of the material is 0.
    subroutine switch_off(scene, name)

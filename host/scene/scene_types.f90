@@ -63,6 +63,7 @@ module scene_types
    type, extends(scene_item_t) :: scene_region_t
       character(LENGTH) :: group_name = 'all', material_name = '', retention_name = '', permeability_name = ''
       real(wp) :: rho_s = 2.65_wp, void_ratio = -1.0_wp, damping = 0.0_wp, stiffness_damping = 0.0_wp
+      real(wp) :: viscosity = 0.0_wp
       integer :: drainage = COUPLED
       logical :: rest = .false.         !< Without a group: the elements that no other region has.
    end type scene_region_t
@@ -154,7 +155,6 @@ module scene_types
       integer :: slave = 0, master = 0               !< Groups of the mesh.
       integer :: plate = 0                           !< The master as a plate with a face of its own, 0: it is none.
       type(contact_options_t) :: options
-      logical :: drains_by_state = .false.           !< Covered nodes are impervious.
       character(LENGTH), allocatable :: stages(:)
    end type contact_pair_t
 

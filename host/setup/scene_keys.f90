@@ -256,6 +256,8 @@ contains
       call k%number('damping', region%damping, ZERO, BIG, 'force against the velocity over mass, dynamic stages [1/s]')
       call k%number('stiffness_damping', region%stiffness_damping, ZERO, BIG, &
                     'stress of the skeleton from its rate, dynamic stages [s]')
+      call k%number('viscosity', region%viscosity, ZERO, BIG, &
+                    'shear viscosity beside the skeleton, not in static stages [kPa s]')
       region%rest = .not. k%given('group')
       scene%regions = [scene%regions, region]
    end subroutine take_region
@@ -562,12 +564,6 @@ contains
       call k%word('gap', contact%options%gap, 'nodal|pointwise|combined', 'gap that is penalised, see CONTACT.md')
       call k%number('search_radius', contact%options%search_radius, ZERO, BIG, &
                     'edges farther apart are not paired [m]; 0: length of the slave edge')
-      call k%number('friction', contact%options%friction, ZERO, 100*ONE, 'coefficient of Coulomb friction [-]')
-      call k%number('cohesion', contact%options%cohesion, ZERO, BIG, 'shear stress that friction adds to [kPa]')
-      call k%number('tangential_penalty', contact%options%tangential_penalty, ZERO, BIG, &
-                    'shear stress of a unit of slip before it slides [kN/m3]; 0: a tenth of the penalty')
-      call k%flag('drainage', contact%drains_by_state, 'fixed|state', 'state', &
-                  'state: nodes in contact are released from &fix of pressures')
       call k%texts('stages', contact%stages, STAGES)
       contact%options%axisymmetric = scene%axisymmetric
       scene%contacts = [scene%contacts, contact]

@@ -4,7 +4,6 @@ module scene_reader
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_table, only: key_table_t
    use namelists, only: group_t, read_groups
-   use exit_codes, only: EXIT_GROUP
    use scene_fingerprint, only: fingerprint_of, hashes_of
    use scene_tolerances, only: ask_key
    use scene_keys, only: check_keys, make_lists, take_group
@@ -14,7 +13,7 @@ module scene_reader
    use scene_names, only: check_names
    use scene_refinement, only: refine_mesh
    use scene_settings, only: apply_settings
-   use scene_types, only: scene_t, scene_item_t, place_of
+   use scene_types, only: scene_t
    use stage_histories, only: place_histories
    implicit none (type, external)
    private

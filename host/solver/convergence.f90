@@ -12,10 +12,11 @@ module convergence
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: DYNAMIC
-   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_C
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: control_t, log_t, measure, good_enough, field_scales, body_scale, is_body, rounding_in
+   public :: control_t, log_t, measure, good_enough, field_scales, water_of, water_scale, body_scale, is_body
+   public :: rounding_in
    public :: note_stagnation, is_in_vain
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
@@ -59,6 +60,8 @@ module convergence
       integer :: outcome = 0                  !< One of the outcomes of newton_step; 0: converged.
       integer :: iterations = 0
       real(wp) :: error(FIELDS) = 0.0_wp, first_error(FIELDS) = 0.0_wp
+      !> Error of the balance of water, where air is an unknown; that of p_w is no smaller.
+      real(wp) :: water = 0.0_wp
       real(wp) :: reduction = 0.0_wp          !< |R| over the larger of |R_0| and |R_1|.
       real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
       real(wp) :: changed(FIELDS) = 0.0_wp    !< Largest |dx| of every field in the last correction [m, kPa].
@@ -133,6 +136,8 @@ contains
       share = MOST_KEPT
       where (hidden) share = min(MOST_KEPT, log%changed/log%before)
       hidden = hidden .and. log%changed < log%before .and. log%changed*share/(1 - share) < control%negligible
+      ! The balance of water has a scale of its own.
+      hidden = hidden .and. log%water < control%tolerance
       hidden = hidden .and. log%error*log%scales < control%tolerance*maxval(log%scales(DISPLACEMENTS + 1:))
    end function hidden
 
@@ -185,7 +190,7 @@ contains
       type(assembly_t), intent(in) :: assembly
       logical, intent(in) :: by_change
       real(wp), intent(out) :: s(FIELDS), floor(FIELDS)
-      integer :: i, f
+      integer :: i, f, row
 
       s = 0.0_wp
       floor = 0.0_wp
@@ -197,12 +202,68 @@ contains
          else
             s(f) = s(f) + assembly%scale(i)**2
          end if
-         floor(f) = floor(f) + (RATE_SHARE*assembly%floor(i))**2
+         ! The rows of p_c hold the floor of the water.
+         row = i
+         if (f == AT_P_C) row = dofs%of(AT_P_W, dofs%node(i))
+         floor(f) = floor(f) + (RATE_SHARE*assembly%floor(row))**2
       end do
       ! The displacements are one field: a component without forces is no measure of its own.
       s(:DISPLACEMENTS) = sum(s(:DISPLACEMENTS))
       floor(:DISPLACEMENTS) = sum(floor(:DISPLACEMENTS))
    end subroutine add_scales
+
+   !> The water's part of volume balances, in the rows of p_w: these less those of p_c, unless they are it already.
+   pure function water_of(dofs, air, rows) result(water)
+      type(dofs_t), intent(in) :: dofs
+      logical, intent(in) :: air(:)       !< (nodes) The air pressure is prescribed.
+      real(wp), intent(in) :: rows(:)     !< (unknowns) [m3/s]
+      real(wp) :: water(size(rows))
+      integer :: i, c
+
+      water = 0.0_wp
+      do i = 1, dofs%n
+         if (dofs%field(i) /= AT_P_W) cycle
+         c = dofs%of(AT_P_C, dofs%node(i))
+         water(i) = rows(i)
+         if (c > 0 .and. .not. air(dofs%node(i))) water(i) = rows(i) - rows(c)
+      end do
+   end function water_of
+
+   !> Rows of p_w in which a balance of water is solved: where suction is prescribed the flow of air is not known.
+   pure function has_water(dofs, constraint) result(has)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      logical :: has(dofs%n)
+      integer :: i, c
+
+      has = dofs%field == AT_P_W .and. .not. constraint%fixed
+      do i = 1, dofs%n
+         if (.not. has(i) .or. constraint%air(dofs%node(i))) cycle
+         c = dofs%of(AT_P_C, dofs%node(i))
+         if (c > 0) has(i) = .not. constraint%fixed(c)
+      end do
+   end function has_water
+
+   !> Magnitude that the residual of the water is small against [m3/s]. A flow of air that is much larger has no part in it.
+   !> docs/theory/host.md section 5.1.
+   pure real(wp) function water_scale(dofs, constraint, assembly, largest) result(scale)
+      type(dofs_t), intent(in) :: dofs
+      type(constraint_t), intent(in) :: constraint
+      type(assembly_t), intent(in) :: assembly
+      real(wp), intent(in) :: largest(FIELDS)   !< As of field_scales.
+      real(wp) :: s, floor
+      integer :: i, c
+
+      s = 0.0_wp
+      floor = 0.0_wp
+      do i = 1, dofs%n
+         if (dofs%field(i) /= AT_P_W .or. constraint%fixed(i)) cycle
+         s = s + assembly%water(i)**2
+         c = dofs%of(AT_P_C, dofs%node(i))
+         floor = floor + (RATE_SHARE*assembly%floor(merge(c, i, c > 0)))**2
+      end do
+      scale = max(sqrt(s), sqrt(floor), HISTORY_SHARE*largest(AT_P_W), NO_FORCE)
+   end function water_scale
 
    !> A rigid body that moves is measured by the forces on it: in the sum of its field it would be lost. i: an unknown.
    pure logical function is_body(constraint, i)
@@ -285,6 +346,11 @@ contains
       scales = max(field_scales(dofs, constraint, assembly, most), rounding)
       log%scales = scales
       log%error = residual_norms(dofs, constraint, rhs)/scales
+      if (allocated(assembly%water)) then
+         log%water = norm2(pack(water_of(dofs, constraint%air, rhs), has_water(dofs, constraint))) &
+                     /max(water_scale(dofs, constraint, assembly, most), maxval(rounding(AT_P_W:)))
+         log%error(AT_P_W) = max(log%error(AT_P_W), log%water)
+      end if
       do i = 1, dofs%n
          if (is_body(constraint, i)) &
             log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(constraint, assembly, most, i))

@@ -6,13 +6,13 @@ module linear_system
    use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE
    use contact_interfaces, only: contacts_t, evaluate_contacts, fit_pattern
-   use convergence, only: field_scales, body_scale, is_body
+   use convergence, only: field_scales, water_scale, water_of, body_scale, is_body
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
    use sparse_factors, only: sparse_t, analyse, factorise, SOLVED
    use sparsity_pattern, only: pattern_t
-   use unknown_fields, only: FIELDS, DISPLACEMENTS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
    public :: system_t, solve_step, asked_for, update_contacts, MOST_STEPS
@@ -64,6 +64,8 @@ contains
       scales = max(field_scales(dofs, constraint, assembly, system%largest), LEAST_SCALE)
       ! What a step changes is not known before its first solution: the forces that it asks for tell.
       if (assembly%with_change) scales = max(scales, asked_for(dofs, rhs))
+      if (allocated(assembly%water)) scales(AT_P_W:) = min(scales(AT_P_W:), max(LEAST_SCALE, &
+         water_scale(dofs, constraint, assembly, system%largest), norm2(water_of(dofs, constraint%air, rhs))))
       weight = 1/scales(dofs%field)
       do i = 1, dofs%n
          if (is_body(constraint, i)) weight(i) = 1/max(body_scale(constraint, assembly, system%largest, i), LEAST_SCALE)

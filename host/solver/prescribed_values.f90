@@ -2,19 +2,20 @@
 !> Values that a step prescribes, and the rows of the equations that say so. docs/theory/host.md section 7.1.
 module prescribed_values
    use kinds, only: wp
-   use dashpots, only: dashpots_t
    use springs, only: spring_t
    use degrees_of_freedom, only: dofs_t
+   use linear_forces, only: linear_forces_t
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: constraint_t, constrain, loads_of_water
+   public :: constraint_t, is_released, constrain, loads_of_water
 
    !> Prescribed unknowns and loads of a step.
    type :: constraint_t
       logical, allocatable :: fixed(:)        !< Unknowns
       real(wp), allocatable :: target(:)      !< values of the unknowns that are fixed, at the end of the step
+      logical, allocatable :: released(:, :)  !< (fixes, nodes) Where no &fix acts in this step; not allocated: nowhere.
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
       real(wp), allocatable :: air_target(:)
       ! Where a pressure has a limit the target is that, and `fixed` says whether it stands there.
@@ -25,13 +26,22 @@ module prescribed_values
       real(wp), allocatable :: rain_0(:), rain_1(:)   !< Rain in the loads below, before and after [m3/s].
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
-      type(dashpots_t), allocatable :: dashpots(:)   !< Dashpots of terms.
-      type(spring_t), allocatable :: springs(:)      !< Springs of terms.
+      type(linear_forces_t), allocatable :: linear(:)   !< Dashpots and springs of terms.
+      type(spring_t), allocatable :: springs(:)      !< Springs between two unknowns, which may part.
       real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
       real(wp), allocatable :: mass(:)        !< Masses of rigid bodies [Mg].
       integer, allocatable :: bodies(:, :)    !< (3, bodies that turn) Their unknowns.
    end type constraint_t
 contains
+   !> Whether a &fix has no effect at a node in this step.
+   pure logical function is_released(constraint, fix, node)
+      type(constraint_t), intent(in) :: constraint
+      integer, intent(in) :: fix, node   !< Numbers.
+
+      is_released = .false.
+      if (allocated(constraint%released)) is_released = constraint%released(fix, node)
+   end function is_released
+
    !> Rows of prescribed unknowns say what is missing of their value; the diagonal keeps its size. docs/theory/host.md
    !> section 7.1.
    subroutine constrain(dofs, pattern, constraint, x, values, rhs)

@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> What a step is taken on: the matrix, what is prescribed, the states before and after, and the place in the stages.
+!> Solution on which a step is taken: the matrix, what is prescribed, the states before and after, and the place in
+!> the stages.
 module solution
    use kinds, only: wp
    use equation_assembly, only: assembly_t
@@ -27,7 +28,7 @@ module solution
    end type stage_state_t
 
    type :: solution_t
-      type(pattern_t) :: pattern               !< Of the matrix; it grows with the contacts.
+      type(pattern_t) :: pattern               !< Pattern of the matrix; it grows with the contacts.
       type(assembly_t) :: assembly
       type(system_t) :: system
       type(constraint_t) :: constraint
@@ -38,7 +39,7 @@ contains
    !> Share of the stage that is over at a time. [-]
    pure real(wp) function share_of(self, duration, time) result(share)
       class(stage_state_t), intent(in) :: self
-      real(wp), intent(in) :: duration, time   !< Of the stage [s].
+      real(wp), intent(in) :: duration, time   !< Duration of the stage, and the time [s].
 
       share = min(1.0_wp, max(0.0_wp, (time - self%t_start)/duration))
    end function share_of

@@ -7,7 +7,6 @@
 module absorbing
    use acting_places, only: facing_edges, acting_stages
    use archive, only: archive_t
-   use dashpots, only: dashpots_t
    use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_GROUP, EXIT_MATERIAL
@@ -16,6 +15,7 @@ module absorbing
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
+   use linear_forces, only: linear_forces_t
    use material_point, only: response_t, report_t
    use model_types, only: model_t, action_t, term_t, factor_at
    use name_search, only: mesh_group, defined_name, check_stages
@@ -37,7 +37,7 @@ module absorbing
    type, extends(action_t) :: side_t
       real(wp) :: rho = 0.0_wp, c_p = 0.0_wp, c_s = 0.0_wp   !< Of the ground behind; 0: those of the soil.
       real(wp) :: velocity(2) = 0.0_wp           !< Of the incoming wave at a factor of 1 [m/s].
-      integer :: dashpots = 0                    !< Its place among those of the constraint.
+      integer :: dashpots = 0                    !< Place of its dashpots in the constraint.
       logical, allocatable :: held(:)            !< (unknowns) Displacements of the boundary.
       real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
    end type side_t
@@ -135,15 +135,15 @@ contains
       type(model_t), intent(in) :: model
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
-      type(dashpots_t) :: dashpots
+      type(linear_forces_t) :: dashpots
       integer :: i
 
-      if (.not. allocated(solution%constraint%dashpots)) allocate (solution%constraint%dashpots(0))
+      if (.not. allocated(solution%constraint%linear)) allocate (solution%constraint%linear(0))
       do i = 1, size(self%sides)
          if (fault%code /= 0) return
          call prepare_side(model, self%sides(i), solution%state, dashpots, fault)
-         solution%constraint%dashpots = [solution%constraint%dashpots, dashpots]
-         self%sides(i)%dashpots = size(solution%constraint%dashpots)
+         solution%constraint%linear = [solution%constraint%linear, dashpots]
+         self%sides(i)%dashpots = size(solution%constraint%linear)
       end do
    end subroutine begin_run
 
@@ -151,7 +151,7 @@ contains
       type(model_t), intent(in) :: model
       type(side_t), intent(inout) :: side
       type(state_t), intent(in) :: state
-      type(dashpots_t), intent(out) :: one
+      type(linear_forces_t), intent(out) :: one
       type(fault_t), intent(inout) :: fault
       type(behind_t) :: ground
       integer, allocatable :: edges(:, :)
@@ -297,7 +297,7 @@ contains
       type(model_t), intent(in) :: model
       integer, intent(in) :: edge(3)
       type(behind_t), intent(in) :: ground
-      type(dashpots_t), intent(inout) :: one
+      type(linear_forces_t), intent(inout) :: one
       type(edge_point_t) :: points(PER_EDGE)
       real(wp) :: normal(2), block(2, 2), c(2, 2, 3, 3), h(3, 3)
       integer :: g, i, j, a, b
@@ -384,8 +384,8 @@ contains
       associate (c => solution%constraint, now => solution%state%time)
          do i = 1, size(self%sides)
             associate (side => self%sides(i))
-               c%dashpots(side%dashpots)%acts = acts(side, model, solution%at%stage)
-               if (.not. c%dashpots(side%dashpots)%acts) cycle
+               c%linear(side%dashpots)%acts = acts(side, model, solution%at%stage)
+               if (.not. c%linear(side%dashpots)%acts) cycle
                c%load_0 = c%load_0 + factor_at(model, side%amplitude, now)*side%incoming
                c%load_1 = c%load_1 + factor_at(model, side%amplitude, now + dt)*side%incoming
             end associate

@@ -3,7 +3,9 @@
 module term_registry
    use absorbing, only: absorbing_t
    use buffer, only: buffer_t
+   use contact_drainage, only: contact_drainage_t
    use faults, only: fault_t
+   use friction, only: friction_t
    use key_table, only: key_table_t
    use model_types, only: model_t, term_t, term_box_t
    use staging, only: staging_t
@@ -22,6 +24,8 @@ contains
       call add(strength_t())
       call add(staging_t())
       call add(absorbing_t())
+      call add(contact_drainage_t())
+      call add(friction_t())
       call add(buffer_t())
    contains
       subroutine add(one)

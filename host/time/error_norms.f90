@@ -13,7 +13,7 @@
 module error_norms
    use archive, only: archive_t
    use kinds, only: wp
-   use generalised_alpha, only: scheme_t, STATIC, QUASI_STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t
    implicit none (type, external)
    private
    public :: rate_memory_t, new_memory, exchange_memory, shift_rates, local_errors, remember, forget, &
@@ -85,8 +85,8 @@ contains
          memory%base_s_rate = s_rate
          memory%based = .true.
       end if
-      if (scheme%kind == STATIC .or. .not. memory%known) return
-      first = merge(1, 3, scheme%kind == QUASI_STATIC)
+      if (.not. scheme%has_rates .or. .not. memory%known) return
+      first = merge(3, 1, scheme%has_inertia)
       share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
       v(first:, :) = memory%base_rate(first:, :) + share*(memory%base_rate(first:, :) - memory%rate(first:, :))
       s_rate = memory%base_s_rate + share*(memory%base_s_rate - memory%s_rate)
@@ -107,12 +107,12 @@ contains
       error = 0.0_wp
       known = memory%known
       associate (dt => scheme%dt)
-         if (scheme%kind == STATIC) then
+         if (.not. scheme%has_rates) then
             if (memory%known) error = static_error((x1 - x0)/dt, memory%rate, dt, memory%dt)
             return
          end if
          first = 1
-         if (scheme%kind == DYNAMIC) then
+         if (scheme%has_inertia) then
             first = 3
             known(1:2) = .true.
             error(1:2, :) = constant_of_accelerations(scheme)*dt**2*(a1 - a0)
@@ -147,7 +147,7 @@ contains
       real(wp), intent(in) :: x0(:, :), x1(:, :), v0(:, :), s_rate(:)
 
       memory%rate = v0
-      if (scheme%kind == STATIC) memory%rate = (x1 - x0)/scheme%dt
+      if (.not. scheme%has_rates) memory%rate = (x1 - x0)/scheme%dt
       memory%s_rate = s_rate
       memory%dt = scheme%dt
       memory%based = .false.

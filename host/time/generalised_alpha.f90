@@ -8,14 +8,16 @@ module generalised_alpha
    implicit none (type, external)
    private
    public :: scheme_t, make_scheme, predict, advance_rates, rate_of
-   public :: STATIC, QUASI_STATIC, DYNAMIC
+   public :: STATIC, QUASI_STATIC, DYNAMIC, has_rates, has_inertia, is_flow
 
    integer, parameter :: STATIC = 1         !< Equilibrium alone: no rates, pressures held.
    integer, parameter :: QUASI_STATIC = 2   !< Flow and equilibrium: no accelerations.
-   integer, parameter :: DYNAMIC = 3
+   integer, parameter :: DYNAMIC = 3        !< Flow and equilibrium with accelerations.
 
    type :: scheme_t
       integer :: kind = STATIC
+      logical :: has_rates = .false.               !< There are first-order rates, and so flow.
+      logical :: has_inertia = .false.             !< There are accelerations.
       real(wp) :: dt = 1.0_wp
       real(wp) :: beta = 0.25_wp, gamma = 0.5_wp   !< Newmark's, for displacements of dynamic steps.
       real(wp) :: gamma_1 = 1.0_wp                 !< Weight of the new rate, for first-order rates.
@@ -26,6 +28,27 @@ module generalised_alpha
       real(wp) :: c_v = 0.0_wp, c_a = 0.0_wp, c_p = 0.0_wp   !< Slopes of those at their level against the new values.
    end type scheme_t
 contains
+   !> Whether an analysis of a kind has first-order rates, and so flow.
+   elemental logical function has_rates(kind)
+      integer, intent(in) :: kind
+
+      has_rates = kind /= STATIC
+   end function has_rates
+
+   !> Whether an analysis of a kind has accelerations.
+   elemental logical function has_inertia(kind)
+      integer, intent(in) :: kind
+
+      has_inertia = kind == DYNAMIC
+   end function has_inertia
+
+   !> Whether an analysis of a kind has rates alone, no accelerations.
+   elemental logical function is_flow(kind)
+      integer, intent(in) :: kind
+
+      is_flow = kind == QUASI_STATIC
+   end function is_flow
+
    !> Coefficients of a step of kind STATIC, QUASI_STATIC or DYNAMIC. Chung & Hulbert (1993), Jansen et al. (2000):
    !> docs/theory/host.md section 4.1, gamma_1 section 4.2.
    pure function make_scheme(kind, rho_inf, dt, begins) result(scheme)
@@ -36,8 +59,10 @@ contains
       type(scheme_t) :: scheme
 
       scheme%kind = kind
+      scheme%has_rates = has_rates(kind)
+      scheme%has_inertia = has_inertia(kind)
       scheme%dt = dt
-      if (kind == STATIC) return
+      if (.not. scheme%has_rates) return
       scheme%l_f = 1/(1 + rho_inf)
       scheme%l_p = (3 - rho_inf)/(2*(1 + rho_inf))
       scheme%gamma_1 = 1/(1 + rho_inf)
@@ -46,7 +71,7 @@ contains
          if (begins) scheme%gamma_1 = 1.0_wp
       end if
       scheme%c_p = scheme%l_p/(scheme%gamma_1*dt)
-      if (kind == QUASI_STATIC) then
+      if (.not. scheme%has_inertia) then
          scheme%l_v = scheme%l_p
          scheme%c_v = scheme%c_p
          return
@@ -69,9 +94,9 @@ contains
       real(wp), intent(out) :: x1(:, :)   !< Predicted values, in the shape of x0.
 
       x1 = x0
-      if (no_predictor .or. scheme%kind == STATIC) return
+      if (no_predictor .or. .not. scheme%has_rates) return
       x1 = x0 + scheme%dt*v0
-      if (scheme%kind == DYNAMIC) x1(1:2, :) = x1(1:2, :) + 0.5_wp*scheme%dt**2*a0
+      if (scheme%has_inertia) x1(1:2, :) = x1(1:2, :) + 0.5_wp*scheme%dt**2*a0
    end subroutine predict
 
    !> New rates and accelerations that belong to new values. docs/theory/host.md sections 4.1 and 4.2; 0 in static
@@ -83,9 +108,9 @@ contains
 
       v1 = 0.0_wp
       a1 = 0.0_wp
-      if (scheme%kind == STATIC) return
+      if (.not. scheme%has_rates) return
       v1 = rate_of(scheme, x0, v0, x1)
-      if (scheme%kind == QUASI_STATIC) return
+      if (.not. scheme%has_inertia) return
       associate (b => scheme%beta, g => scheme%gamma, dt => scheme%dt)
          a1 = (x1(1:2, :) - x0(1:2, :))/(b*dt**2) - v0(1:2, :)/(b*dt) - (0.5_wp/b - 1)*a0
          v1(1:2, :) = v0(1:2, :) + dt*((1 - g)*a0 + g*a1)
@@ -99,7 +124,7 @@ contains
       real(wp), intent(in) :: x0, v0, x1
 
       rate_of = 0.0_wp
-      if (scheme%kind == STATIC) return
+      if (.not. scheme%has_rates) return
       rate_of = (x1 - x0)/(scheme%gamma_1*scheme%dt) - (1 - scheme%gamma_1)/scheme%gamma_1*v0
    end function rate_of
 

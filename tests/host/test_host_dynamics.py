@@ -102,8 +102,12 @@ def test_what_the_balance_of_a_shaken_column_leaves_open_is_of_second():
     check("what the balance of a shaken column leaves open is of second order",
           open_at[0.005] < open_at[0.01] / 3, open_at)
     omega = np.pi / 8 * np.sqrt(2.4e4 / 2)
-    for name, alpha, beta in (("mass", ALPHA, 0), ("stiffness", 0, BETA), ("both", ALPHA, BETA)):
-        text = column(cells=8, damping=f"damping = {alpha} stiffness_damping = {beta}") + (
+    # A wave of compression under zero lateral strain: modulus 2.4e4 kPa, and 4/3 of the viscosity of shear.
+    keys = "damping = {alpha} stiffness_damping = {beta}"
+    for name, alpha, beta, given in (
+            ("mass", ALPHA, 0, keys), ("stiffness", 0, BETA, keys), ("both", ALPHA, BETA, keys),
+            ("viscosity", 0, BETA, f"viscosity = {0.75 * 2.4e4 * BETA}")):
+        text = column(cells=8, damping=given.format(alpha=alpha, beta=beta)) + (
             "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
             f"&initial wave = {SPEED} wave_number = {np.pi / 8} datum = -4 /\n") + stage("swing", 0.6, 1e-3)
         h, folder = run(text, f"rayleigh_{name}")
@@ -198,3 +202,40 @@ def test_given_steps_end_at_the_breaks_that_they_would_jump_over():
     ramp = text.replace("0, 0.004, 0.009, 0.05, 0.052, 0.055 values = 0, 1, 0, 0, -1, 0", "0, 0.05 values = 0, 1")
     rows, _ = run(ramp, "ramp")
     check("steps of a ramp stay", len(rows["time"]) == 6, rows["time"])
+
+
+CREEP = """&scene name = 'creep' fields = 'u' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'soil' young = 3.0e3 poisson = 0.25 /
+&region material = 'soil' void_ratio = 0.5 rho_s = 2 {viscosity} /
+&stage name = 'creep' analysis = '{kind}' duration = 1 dt = {dt} tolerance = 1e-9 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 12 /
+&point name = 'top' r = 0 z = 1 /
+"""
+
+
+def test_a_viscous_sample_creeps_as_kelvin_and_voigts_element():
+    # s_zz = 2 G e + 2 eta de/dt, two thirds of the load from t = 0 on; the volume answers at once. G 1200, K 2000 kPa.
+    shear, bulk, eta, load = 1200.0, 2000.0, 240.0, 12.0
+    off = {}
+    for dt in (0.02, 0.01, 0.005):
+        h, folder = run(CREEP.format(viscosity=f"viscosity = {eta}", kind="quasi_static", dt=dt), "creep")
+        wanted = -load / 3 / shear * (1 - np.exp(-shear * h["time"] / eta)) - load / 9 / bulk
+        off[dt] = np.abs(h["top.u_z"] - wanted)[1:].max() / load * 3 * shear
+        ledger = tables.columns(folder / "ledger.csv")
+        # In the end the load has given 2/3 of its work on the deviator to the spring, half of it, and half is lost.
+        check(f"half of the work on the shape is lost, dt {dt}",
+              abs(ledger["damping"][-1] / (np.pi * load**2 / 6 / shear) - 1) < 4 * dt, ledger["damping"][-1])
+    # The load acts at once, and the rates of the start do not know it: the first step lacks a third of dt/0.2 s.
+    check("creep follows the closed form", all(off[dt] < 0.5 * dt / 0.2 for dt in off), off)
+    check("and what is off falls with the step", off[0.005] < 0.6 * off[0.01] < 0.36 * off[0.02], off)
+
+    # A static stage has no time: the same bytes, and a scene without another stage is told so.
+    texts = [CREEP.format(viscosity=v, kind="static", dt=1) for v in ("", f"viscosity = {eta}")]
+    (plain, _), (viscous, _) = (run(text, "creep_static") for text in texts)
+    check("a static stage has no viscous stress", (plain["top.u_z"] == viscous["top.u_z"]).all(), viscous["top.u_z"])
+    told = [start("creep_told", text, "--check").stderr for text in texts]
+    check("a viscosity that no stage can feel is told", "viscosity" in told[1] and "static" in told[1]
+          and "viscosity" not in told[0], told)

@@ -195,6 +195,37 @@ SHAKEN = """&scene name = 'base' geometry = 'plane_strain' /
 STRUCK = "begins in stage shake with a velocity of "
 
 
+LAKE = """&scene name = 'lake' geometry = 'plane_strain' fields = 'u-p_w' gravity = 10 /
+&mesh r = 0, 1 r_cells = 2 z = -3, 0 z_cells = 12 /
+&elastic name = 'e' young = 2e4 poisson = 0.3 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region material = 'e' void_ratio = 0.6 permeability = 'k' rho_s = 2.6 /
+&initial p_w = 30 p_w_slope = -10 stress = {stress} /
+&stage name = 'flow' analysis = 'quasi_static' duration = 100 dt = 10 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' value = 30 /
+&load group = 'top' kind = 'pressure' value = {load} /
+&point name = 'top' r = 0 z = 0 /
+"""
+
+
+def test_ground_below_a_lake_begins_in_balance_or_it_is_told():
+    # 3 m of water stand on the ground. Its weight was there before: without it in &initial the surface springs down.
+    for name, stress, load, is_told in (("lake", "'geostatic' surcharge = 30", 30, False),
+                                        ("bare", "'geostatic'", 30, True), ("weightless", "'none'", 30, True),
+                                        ("loaded", "'geostatic' surcharge = 30",
+                                         "30 /\n&load group = 'top' kind = 'pressure' value = 15", False)):
+        text = LAKE.format(stress=stress, load=load)
+        for words in ((), ("--check",)):
+            done = start(name, text, *words)
+            check(f"{name} {words}: runs", done.returncode == 0, done.stderr)
+            check(f"{name} {words}: told {is_told}", bool(told(done)) == is_told, done.stderr)
+    bare = start("bare", LAKE.format(stress="'geostatic'", load=30))
+    check("as much as is missing", "are 30 kPa away" in bare.stderr, bare.stderr)
+
+
 def test_a_motion_that_begins_with_a_velocity():
     for times, values, rest, more, words in (
             ("0, 0.1, 0.2", "0, 1, 0", "", "", STRUCK + "0.2 m/s, and the ground with 0"),

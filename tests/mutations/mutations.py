@@ -4,7 +4,7 @@
 TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"
 DIRECTION, EQUATION = "core/rates/mud_direction.f90", "core/rates/mud_direction_equation.f90"
 INCREMENT, REVERSAL = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90"
-TRANSIENT = "core/integration/mud_transient.f90"
+TRANSIENT, INSIDE_DOMAIN = "core/integration/mud_transient.f90", "core/integration/mud_inside_domain.f90"
 SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial.f90"
 RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
@@ -219,7 +219,13 @@ MUTATIONS = [
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
     ("a straight strain without the centre's part in its derivative",
-     (INCREMENT, "loading%of_centre = decay*length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
+     (INCREMENT, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
+    ("shear inside the elastic domain with the modulus at the stress",
+     (INCREMENT, "g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)", "g = 2.0_wp*w%g")),
+    ("no change of the modulus at the centre with the void ratio",
+     (ELASTIC, "slopes(2) = slopes(2) + by_e_centre*(1.0_wp + e_centre)/(1.0_wp + e)", "slopes(2) = slopes(2)")),
+    ("a substep inside the elastic domain that does not move the stress with its start",
+     (INSIDE_DOMAIN, "dp = per_e*(share*(root/par%k_0) + de/e - de_end/e_end)", "dp = -per_e*de_end/e_end")),
     ("a straight strain that loads across nu from the start",
      (INCREMENT, "loading%of_strain = 1.0_wp - decay", "loading%of_strain = 1.0_wp")),
     ("what fades is not taken from the changes of rates",
@@ -241,7 +247,7 @@ MUTATIONS = [
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
 SPRINGS = "contact/plate_springs.f90"
 SEARCH, PLATE, JOINED = "contact/contact_search.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
-DRAINAGE = "model/contact_drainage.f90"
+DRAINAGE = "terms/contact_drainage.f90"
 
 # Of the host's contact, below host.
 CONTACT = [
@@ -279,12 +285,12 @@ CONTACT = [
     ("slopes against the values within the step", (JOINED, "values(place) + share*value(k)", "values(place) + value(k)")),
     ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            call probe_one(t, x, with_tangent",
                                           "call probe_one(t, x, with_tangent")),
-    ("drainage without coverage", (DRAINAGE, "point%coverage >= HALF", "point%coverage > 0.0_wp")),
-    ("drainage without pressure", (DRAINAGE, "point%pressure > 0.0_wp .and. ", "")),
-    ("a released node stays so", (DRAINAGE, "drainage%released = .false.\n      do c", "do c")),
+    ("drainage without coverage", (DRAINAGE, "t%point%coverage >= HALF", "t%point%coverage > 0.0_wp")),
+    ("drainage without pressure", (DRAINAGE, "t%point%pressure > 0.0_wp .and. ", "")),
+    ("a released node stays so", (DRAINAGE, "constraint%released = .false.\n         do c", "do c")),
     ("a boundary that touches the slave gives way too",
      (DRAINAGE, "shared .or. all(in_group(edges(:, e)))", "shared .or. any(in_group(edges(:, e)))")),
-    ("drainage in every stage", (DRAINAGE, " .or. .not. contacts%interfaces(c)%acts) cycle", ") cycle")),
+    ("drainage in every stage", (DRAINAGE, " .or. .not. t%acts) cycle", ") cycle")),
 ]
 
 # Regions of the host: (title, (file below host, text that stands there once, its replacement), ...).

@@ -14,8 +14,8 @@ import sys
 from ..errors import InputError
 from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
 from .effects import LEAST_RUN, SHARE, Effects, Silent, write_scene
-from .runs import BudgetUsedUp, Failed, Scene
 from .pictures import accuracy_picture, effects_picture, price_picture
+from .runs import BudgetUsedUp, Failed, Scene
 
 EXIT_INPUT, EXIT_INTERRUPTED = 2, 130
 LEVELS = (0.1, 0.03, 0.01)  # of price
@@ -36,51 +36,25 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, words in COMMANDS.items():
         one = commands.add_parser(name, help=words, description=words, epilog=CODES)
-        one.add_argument("scene", help="file of a scene of mud_host")
+        add = one.add_argument
+        add("scene", help="file of a scene of mud_host")
         if name == "effects":
-            one.add_argument(
-                "--run", action="store_true", help="writes the scene without what does not matter, and runs it"
-            )
+            add("--run", action="store_true", help="writes the scene without what does not matter, and runs it")
         if name in ("effects", "run"):
-            one.add_argument(
-                "--share",
-                type=float,
-                default=SHARE,
-                metavar="S",
-                help="of the run that pilots may cost, in "
-                f"processor time; default {SHARE:g}; inf: any, also of short runs",
-            )
-            one.add_argument(
-                "--least-run",
-                type=float,
-                default=LEAST_RUN,
-                metavar="SECONDS",
-                help=f"processor time of the run below which there are no pilots; default {LEAST_RUN:g}",
-            )
+            add("--share", type=float, default=SHARE, metavar="S",
+                help=f"of the run that pilots may cost; default {SHARE:g}; inf: any, also of short runs")
+            add("--least-run", type=float, default=LEAST_RUN, metavar="SECONDS",
+                help=f"time of the run below which there are no pilots; default {LEAST_RUN:g}")
         if name in ("accuracy", "run"):
-            one.add_argument(
-                "--accuracy", type=_share, default=1e-2, metavar="A", help="error asked for [-], default 1e-2"
-            )
-        one.add_argument(
-            "--budget", type=float, default=3600.0, metavar="SECONDS", help="no run ends later than this; default 3600"
-        )
-        one.add_argument(
-            "--goals",
-            nargs="+",
-            metavar="ANSWER",
-            help="answers that count, as top.u_z plate.force_z; "
-            "default: goals of the scene, else unknowns of points and plates",
-        )
-        one.add_argument(
-            "--output",
-            type=pathlib.Path,
-            metavar="FOLDER",
-            help="folder of the study; finished runs in it are not repeated; default: study_SCENE",
-        )
-        one.add_argument(
-            "--host", default="", metavar="PROGRAM", help="mud_host; default: MUD_HOST, or the search path"
-        )
-        one.add_argument("--quiet", action="store_true", help="prints the last line only")
+            add("--accuracy", type=_share, default=1e-2, metavar="A", help="error asked for [-], default 1e-2")
+        add("--budget", type=float, default=3600.0, metavar="SECONDS",
+            help="time that runs may take; default 3600. Times are those of the processor")
+        add("--goals", nargs="+", metavar="ANSWER", help="answers that count, as top.u_z plate.force_z; default: goals "
+            "of the scene, else unknowns of points and plates")
+        add("--output", type=pathlib.Path, metavar="FOLDER",
+            help="folder of the study; finished runs in it are not repeated; default: study_SCENE")
+        add("--host", default="", metavar="PROGRAM", help="mud_host; default: MUD_HOST, or the search path")
+        add("--quiet", action="store_true", help="prints the last line only")
     return top
 
 
@@ -95,58 +69,55 @@ def accuracy(scene: Scene, args, folder=None) -> int:
     """The study `accuracy`: table and picture in the folder of the study, the line."""
     folder = folder or scene.folder
     study = Study(scene, args.accuracy, args.goals)
-    result = study.search()
-    if not result.pairs:
-        print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr)
-        return EXIT_CODES[result.state]
-    pair = result.last
-    write_table(folder / "accuracy.csv", pair)
-    accuracy_picture(folder / "accuracy.png", result, args.accuracy)
-    if result.state != MET:
-        print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr, flush=True)
-    scene.say("answer, largest change, total of the error:")
-    for name, e in sorted(pair.errors.items(), key=lambda item: -item[1].total):
-        scene.say(f"   {name}: {e.change:.4g}, {share(e.total)}")
-    scene.say(f"results: {scene.folder / pair.run.key.folder}; errors: {folder / 'accuracy.csv'}, accuracy.png")
-    scene.say(f"that run: {recipe(scene, pair.run.key)}")
-    print(last_line(result, scene, args.accuracy))
-    return EXIT_CODES[result.state]
+    study.search()
+    if study.state != MET:
+        print(f"mud_study: {study.state}: {study.sentence}", file=sys.stderr, flush=True)
+    if study.pairs:
+        pair = study.pairs[-1]
+        write_table(folder / "accuracy.csv", pair)
+        accuracy_picture(folder / "accuracy.png", study)
+        scene.say("answer, largest change, total of the error:")
+        for name, e in sorted(pair.errors.items(), key=lambda item: -item[1].total):
+            scene.say(f"   {name}: {e.change:.4g}, {share(e.total)}")
+        scene.say(f"results: {scene.folder / pair.run.key.folder}; errors: {folder / 'accuracy.csv'}, accuracy.png")
+        scene.say(f"that run: {recipe(scene, pair.run.key)}")
+        print(f"{sum_of(pair.errors[pair.worst])}, of {pair.worst}; asked {share(args.accuracy)}: {study.state}; "
+              f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.4g}, {pair.run.seconds:.3g} s; study of "
+              f"{len(scene.runs)} runs, {scene.spent / max(pair.run.seconds, 1e-3):.2g} times that run")
+    return EXIT_CODES[study.state]
 
 
 def price(scene: Scene, args) -> int:
     """The study `price`: pairs for 10, 3 and 1 %; what the budget does not reach is expected from those."""
-    study = Study(scene, LEVELS[0], args.goals)
-    rows, recipes, result = [], [], None
+    study, rows, recipes = Study(scene, LEVELS[0], args.goals), [], []
+    for study.accuracy in LEVELS:
+        if study.state in ("", MET):
+            study.search()
+    # A pair holds what it and all finer ones tell.
+    held = [(p, max(q.total for q in study.pairs[i:])) for i, p in enumerate(study.pairs)]
     for level in LEVELS:
-        study.accuracy = level
-        if result is None or result.state == MET:
-            result = study.search()
-        if not result.pairs:
-            print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr)
-            return EXIT_CODES[result.state]
-        enough = [p for p in result.pairs if p.total <= level]
+        enough = [(p, total) for p, total in held if total <= level]
         if enough:
-            best = min(enough, key=lambda p: p.run.seconds)
-            rows.append((level, MET, best.fineness, best.tolerance, best.total, best.run.seconds))
+            best, total = min(enough, key=lambda x: x[0].run.seconds)
+            rows.append((level, MET, best.fineness, best.tolerance, total, best.run.seconds))
             recipes.append(recipe(scene, best.run.key))
         else:
-            expected = study.expected(level)
-            rows.append((level, result.state, *(expected or ("", "", "", ""))))
+            expected = study.expected(level) if study.pairs else None
+            rows.append((level, study.state, *(expected or ("",) * 4)))
             recipes.append(recipe(scene, study.key(*expected[:2])) if expected else "")
-    with open(scene.folder / "price.csv", "w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(("accuracy", "state", "fineness", "step_tolerance", "total", "seconds"))
-        table.writerows([[x if isinstance(x, str) else f"{x:.4g}" for x in row] for row in rows])
-    price_picture(scene.folder / "price.png", study, rows)
-    if rows[-1][1] != MET:
-        print(f"mud_study: {result.state}: {result.sentence}", file=sys.stderr, flush=True)
-    for (level, state, _, _, total, seconds), command in zip(rows, recipes):
-        known = "measured" if state == MET else "expected"
-        print(
-            f"{share(level)}: "
-            + (f"{seconds:.2g} s, {known} {share(total)}: {command}" if command else "no run is known that holds it")
-        )
-    return EXIT_CODES[MET if rows[-1][1] == MET else result.state]
+    if study.state != MET:
+        print(f"mud_study: {study.state}: {study.sentence}", file=sys.stderr, flush=True)
+    if study.pairs:
+        with open(scene.folder / "price.csv", "w", newline="", encoding="utf-8") as file:
+            table = csv.writer(file)
+            table.writerow(("accuracy", "state", "fineness", "step_tolerance", "total", "seconds"))
+            table.writerows([[x if isinstance(x, str) else f"{x:.4g}" for x in row] for row in rows])
+        price_picture(scene.folder / "price.png", study, rows)
+        for (level, state, _, _, total, seconds), command in zip(rows, recipes):
+            known = "measured" if state == MET else "expected"
+            words = f"{seconds:.2g} s, {known} {share(total)}: {command}" if command else "no run known holds it"
+            print(f"{share(level)}: {words}")
+    return EXIT_CODES[study.state]
 
 
 def run(scene: Scene, args) -> int:
@@ -167,37 +138,28 @@ def effects(scene: Scene, args) -> int:
 
 def reduced(scene: Scene, args) -> pathlib.Path:
     """The scene without what does not matter, as a file; the scene as it stands where no pilot may be run."""
-    study = Effects(scene, args.share, args.least_run)
-    path = scene.folder / "reduced.nml"
-    scene.folder.mkdir(parents=True, exist_ok=True)
+    study, path, rows = Effects(scene, args.share, args.least_run), scene.folder / "reduced.nml", []
     try:
         rows = study.search()
     except Silent as silent:
         scene.say(f"effects: {silent}; no effect is tried")
-        rows = []
     except BudgetUsedUp:
         scene.say("effects: the budget ends before the pilots do; all stays as the scene has it")
-        rows = []
     except Failed as failure:
         print(f"mud_study: effects: {failure}; all stays as the scene has it", file=sys.stderr)
-        rows = []
+    scene.used += study.spent
     for row in rows:
-        told = "" if row.influence is None else f"{share(row.influence)} of {row.answer}" if row.answer else ""
-        scene.say(
-            f"   {row.name:26s} {'on' if row.on else 'off':3s} by {'hand ' if row.by_hand else 'pilot'} "
-            f"{told:30s} {row.why}"
-        )
+        told = "" if row.influence is None else f"{share(row.influence)} of {row.answer}"
+        by = "hand " if row.by_hand else "pilot"
+        scene.say(f"   {row.name:26s} {'on' if row.on else 'off':3s} by {by} {told:30s} {row.why}")
     if rows:
         study.write(scene.folder / "effects.csv")
         effects_picture(scene.folder / "effects.png", rows, study.tolerance)
     write_scene(study.reduced(), path, scene.path.parent)
     untried = [r.name for r in study.rows if not (r.by_hand or r.on or (rows and r.influence is not None))]
     if untried:
-        print(
-            f"mud_study: no key says {', '.join(untried)}, nothing in the scene asks for it, and no pilot has tried "
-            "it: off. Say it by its key, or try it by --share inf",
-            file=sys.stderr,
-        )
+        print(f"mud_study: no key says {', '.join(untried)}, nothing in the scene asks for it, and no pilot has tried "
+              "it: off. Say it by its key, or try it by --share inf", file=sys.stderr)
     quoted = f", for a run quoted at {study.quote:.3g} s" if study.quote else ""
     scene.say(f"{study.pilots} pilots, {study.spent:.3g} s of processor time{quoted}; scene of the run: {path}")
     return path
@@ -206,16 +168,6 @@ def reduced(scene: Scene, args) -> pathlib.Path:
 def recipe(scene, key) -> str:
     """The command that makes a run."""
     return shlex.join(["mud_host", str(scene.path), *scene.words_of(key)])
-
-
-def last_line(result, scene, asked):
-    pair = result.last
-    run = pair.run
-    return (
-        f"{sum_of(pair.errors[pair.worst])}, of {pair.worst}; asked {share(asked)}: {result.state}; "
-        f"fineness {pair.fineness:g}, step tolerance {pair.tolerance:.4g}, {run.seconds:.3g} s; study of "
-        f"{len(scene.runs)} runs, {scene.spent / max(run.processor, 1e-3):.2g} times that run"
-    )
 
 
 def main(words: list[str] | None = None) -> int:

@@ -211,7 +211,7 @@ class Effects:
             run = self.runs.run(1 / self.cells, tolerance, settings=settings, most=most)
         finally:
             self.spent += self.runs.lost - lost
-        self.spent += run.processor
+        self.spent += run.seconds
         return run
 
     def base_of(self, out):
@@ -230,11 +230,11 @@ class Effects:
             words = {"steps": "given", "step_ends": file.resolve(), "dt": times[0, 1], "dt_growth": 1.0,
                      "tolerance": stage.get("tolerance", PILOT_NEWTON)}
             keys += [f"stage[{i}].{key}={value}" for key, value in words.items()]
-        return out, tuple(keys), self.pilot(out, keys, MOST_TIMES * first.processor + 1)
+        return out, tuple(keys), self.pilot(out, keys, MOST_TIMES * first.seconds + 1)
 
     def _quote(self, pilot):
         """Processor time of the run, from a pilot's; Silent where that is short."""
-        self.quote = pilot.processor * self._times(len(HostRun(self.runs.folder / pilot.key.folder).ledger["time"]))
+        self.quote = pilot.seconds * self._times(len(HostRun(self.runs.folder / pilot.key.folder).ledger["time"]))
         if self.share != math.inf and self.quote < self.least_run:
             raise Silent(f"the run is quoted at {self.quote:.2g} s of processor time, less than {self.least_run:g} s")
 
@@ -286,20 +286,20 @@ class Effects:
     def _try(self, rows, base) -> list[Effect]:
         """A pilot without each effect; those that are to go."""
         out, steps, pilot = base
-        if pilot.processor * len(rows) > self.left():
+        if pilot.seconds * len(rows) > self.left():
             for row in (r for r in rows if r.by_hand):
                 row.why = OVER_SHARE
             rows = [r for r in rows if not r.by_hand]
         for row in rows:
             try:
-                found = self.pilot([*out, row], steps, MOST_TIMES * pilot.processor + 1)
+                found = self.pilot([*out, row], steps, MOST_TIMES * pilot.seconds + 1)
                 row.influence, row.answer = self.difference(pilot, found)
             except Failed as failure:
                 row.why = str(failure) if failure.cut else f"cannot be left out: {failure.said}"
                 row.on = row.on or not failure.cut
                 self.scene.say(f"   pilot {self.pilots}, without {row.name}: {row.why}")
                 continue
-            row.processor = found.processor / max(pilot.processor, 1e-9)
+            row.processor = found.seconds / max(pilot.seconds, 1e-9)
             row.on = row.by_hand or PILOT_FACTOR * row.influence > self.tolerance
             row.why = "by hand" if row.by_hand else ""
             self.scene.say(f"   pilot {self.pilots}, without {row.name}: {100 * row.influence:.2g} % of {row.answer}")
@@ -311,7 +311,7 @@ class Effects:
         while len(going) > 1:
             back, why = [max(going, key=lambda r: r.influence or 0.0)], "weak alone, but not together with the others"
             try:
-                found = self.pilot([*out, *going], steps, MOST_TIMES * pilot.processor + 1)
+                found = self.pilot([*out, *going], steps, MOST_TIMES * pilot.seconds + 1)
                 apart, answer = self.difference(pilot, found)
                 self.scene.say(f"   pilot {self.pilots}, without all that is to go: {100 * apart:.2g} % of {answer}")
                 if apart <= self.tolerance:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from ..host import HostRun
 
 FIELDS = {"u_r": 0, "u_z": 0, "p_w": 1, "p_c": 1}  # unknowns of a named point; kinds that are compared with each other
 PLATE = {"u_r": 0, "u_z": 0}
-NO_ANSWER = 1e-3  # an answer that changes less, as a share of the largest of its kind, is none
+NO_ANSWER = 1e-2  # an answer that changes less, as a share of the largest of its kind, is none
 ROUNDING = (1e-13, 1e-9)  # a change that is none: of displacements over the size of the mesh [-], of pressures [kPa]
 MISSED = 0.1  # what lies between two steps of the rougher run counts from here on, as a share of the largest change
 
@@ -53,6 +54,9 @@ class Histories:
             time, value = np.r_[before[0], time], np.r_[before[1], value]
         self.forces[name] = _ascending(time, value)
 
+    def has(self, name: str) -> bool:
+        return name in self.values or name in self.forces
+
     def history(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Times and values of an answer."""
         return self.values[name] if name in self.values else self.forces[name]
@@ -63,7 +67,7 @@ class Histories:
         return float(np.max(np.abs(value - (value[0] if name in self.values else 0.0))))
 
     def answers(self) -> list[str]:
-        """Unknowns that change, by more than a thousandth of the largest change of their kind."""
+        """Unknowns that change, by more than a hundredth of the largest change of their kind."""
         changes = {n: self.change(n) for n in self.values}
         kinds = {n: FIELDS[n.rsplit(".", 1)[-1]] for n in changes}
         largest = [max([x for n, x in changes.items() if kinds[n] == k], default=0.0) for k in (0, 1)]
@@ -76,24 +80,43 @@ def _ascending(time, value):
     return time[last], value[last]
 
 
-def distance(rough: Histories, good: Histories, name: str) -> float:
-    """Largest distance of two histories at the times of the rougher one, over the largest change of the better one.
+@dataclass
+class Difference:
+    """How far two histories lie apart: the largest distance over the largest change of the better one, and where."""
+
+    size: float
+    times: np.ndarray
+    values: np.ndarray
+
+    def against(self, other: Difference) -> bool:
+        """Whether it points the other way than another difference, over its times."""
+        return float(np.dot(self.values, np.interp(self.times, other.times, other.values))) < 0
+
+
+def difference(rough: Histories, good: Histories, name: str) -> Difference:
+    """Difference of two histories at the times of the rougher one.
 
     The better one is taken between its steps by monotone cubics: straight lines would err as much as the steps. What
     the better one shows between two steps of the rougher one, and the rougher one does not, counts where it is large.
     """
     change = good.change(name)
-    if not change > 0:
-        return 0.0 if rough.change(name) == 0 else np.inf
     (t, y), (s, z) = rough.history(name), good.history(name)
+    if not change > 0:
+        return Difference(0.0 if rough.change(name) == 0 else np.inf, t, 0 * y)
     seen = (t >= s[min(1, len(s) - 1)]) & (t <= s[-1])
     seen[-1] = True
-    apart = np.max(np.abs(y[seen] - between(s, z, np.clip(t[seen], s[0], s[-1]))))
+    apart = between(s, z, np.clip(t[seen], s[0], s[-1])) - y[seen]
     # The two steps of the rougher run on either side of every moment of the better one.
     at = np.clip(np.searchsorted(t, s), 1, len(t) - 1)
     around = np.array([y[np.clip(at + k, 0, len(y) - 1)] for k in (-2, -1, 0, 1)])
     outside = np.max(np.maximum(z - around.max(0), around.min(0) - z))
-    return float(max(apart, outside if outside > MISSED * change else 0.0) / change)
+    size = max(np.max(np.abs(apart)), outside if outside > MISSED * change else 0.0) / change
+    return Difference(float(size), t[seen], apart)
+
+
+def distance(rough: Histories, good: Histories, name: str) -> float:
+    """Largest distance of two histories, over the largest change of the better one."""
+    return difference(rough, good, name).size
 
 
 def between(x: np.ndarray, y: np.ndarray, at: np.ndarray) -> np.ndarray:

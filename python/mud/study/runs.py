@@ -9,7 +9,6 @@ import math
 import os
 import pathlib
 import resource
-import select
 import shutil
 import signal
 import subprocess
@@ -57,6 +56,11 @@ class Key:
     stress: int = 0
     settings: tuple[str, ...] = ()
 
+    @classmethod
+    def of(cls, fineness, tolerance, newton=0, stress=0, settings=()) -> Key:
+        """With the digits that the host is given."""
+        return cls(float(f"{fineness:.6g}"), float(f"{tolerance:.4g}"), newton, stress, tuple(settings))
+
     @property
     def folder(self) -> str:
         name = f"F{self.fineness:g}_a{self.tolerance:.3g}"
@@ -78,8 +82,7 @@ class Run:
     """A run that is finished."""
 
     key: Key
-    seconds: float  # by the clock
-    processor: float  # all threads
+    seconds: float  # processor time, of all threads
     histories: Histories = field(repr=False)
     localised: str = ""  # what the run says of shear bands without a width of their own
 
@@ -100,7 +103,7 @@ class Scene:
         for name in ("scene", "mesh", "stage"):
             if name not in self.groups:
                 raise InputError(f"{self.path}: the group &{name} is missing")
-        self.began, self.budget = time.monotonic(), budget
+        self.budget, self.used = budget, 0.0  # processor time that runs of this call may take, and have taken [s]
         self.runs: dict[Key, Run] = {}
         self.failed: dict[Key, Failed] = {}
         self.made, self.lost = 0, 0.0  # runs of this call; processor time of runs that failed [s]
@@ -111,25 +114,22 @@ class Scene:
 
     @property
     def left(self) -> float:
-        """Time that is left [s]."""
-        return self.budget - (time.monotonic() - self.began)
+        """Processor time that is left [s]: other programs on the machine do not shorten a study."""
+        return self.budget - self.used
 
     @property
     def spent(self) -> float:
         """Processor time of all finished runs, also of those made earlier [s]."""
-        return self.lost + sum(run.processor for run in self.runs.values())
+        return self.lost + sum(run.seconds for run in self.runs.values())
 
     def say(self, words: str, end: str = "\n"):
         if not self.quiet:
             print(words, end=end, flush=True)
 
-    def known(self, *key, **more) -> Run | None:
-        return self.runs.get(Key(*key, **more))
-
     def run(self, fineness, tolerance, newton=0, stress=0, settings=(), keep=False, most=math.inf) -> Run:
         """A finished run: known, found in the folder, or made. `keep`: with the fields that the scene asks for; `most`:
         processor time that it may take [s]."""
-        key = Key(float(f"{fineness:.6g}"), float(f"{tolerance:.4g}"), newton, stress, tuple(settings))
+        key = Key.of(fineness, tolerance, newton, stress, settings)
         if key in self.failed:
             raise self.failed[key]
         if key not in self.runs:
@@ -139,10 +139,10 @@ class Scene:
                 cut = told["code"] == -signal.SIGXCPU
                 words = "it takes more processor time than it may" if cut else words
                 self.failed[key] = Failed(words, told["code"], "" if cut else told["words"], cut)
-                self.lost += told["processor"]
+                self.lost += told["seconds"]
                 raise self.failed[key]
             folder = self.folder / key.folder
-            self.runs[key] = Run(key, told["seconds"], told["processor"], Histories(folder), told["localised"])
+            self.runs[key] = Run(key, told["seconds"], Histories(folder), told["localised"])
         return self.runs[key]
 
     def words_of(self, key: Key) -> list[str]:
@@ -211,26 +211,33 @@ class Scene:
             command += ["--set", "stage.fields=0"]
         if self.left <= 0:
             raise BudgetUsedUp
-        self.made += 1
+        self.made, limit = self.made + 1, min(most, self.left)
         self.say(f"   run {self.made}: {key} ...", end="")
         start, before = time.monotonic(), processor()
         with open(folder / "said.txt", "w", encoding="utf-8") as said, open(folder / "errors.txt", "w") as errors:
-            process = subprocess.Popen(command, stdout=said, stderr=errors, preexec_fn=_limit(most))
+            process = subprocess.Popen(command, stdout=said, stderr=errors, preexec_fn=_limit(limit))
             try:
                 while process.poll() is None:
-                    self._wait(process, start, folder)
+                    try:
+                        process.wait(WORDS_EVERY)
+                    except subprocess.TimeoutExpired:
+                        lines = (folder / "said.txt").read_text(encoding="utf-8", errors="replace").splitlines()
+                        self.say(f"\n      {time.monotonic() - start:.0f} s: {lines[-1] if lines else ''}", end="")
             except BaseException:
                 process.kill()
                 process.wait()
                 self.say(" stopped")
                 raise
-        seconds = time.monotonic() - start
-        self.say(f" {seconds:.3g} s")
+        used = processor() - before
+        self.used += used
+        if process.returncode == -signal.SIGXCPU and limit < most:
+            self.say(" stopped")
+            raise BudgetUsedUp
+        self.say(f" {used:.3g} s")
         told = {
             "origin": self._origin,
             "words": words,
-            "seconds": seconds,
-            "processor": processor() - before,
+            "seconds": used,
             "code": process.returncode,
             "said": (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip()[-500:],
             "localised": _localised(folder),
@@ -242,36 +249,11 @@ class Scene:
             part.replace(folder / "run.json")
         return {**told, "words": told["said"]}
 
-    def _wait(self, process, start, folder):
-        if not _ended(process, min(WORDS_EVERY, max(self.left, 0.01))):
-            if self.left <= 0:
-                raise BudgetUsedUp
-            lines = (folder / "said.txt").read_text(encoding="utf-8", errors="replace").splitlines()
-            left = f", {self.left:.0f} s left" if self.left < float("inf") else ""
-            self.say(f"\n      {time.monotonic() - start:.0f} s{left}: {lines[-1] if lines else ''}", end="")
-
 
 def list_of(groups, name: str) -> list:
     """Groups of a name, in their order."""
     found = groups.get(name, [])
     return list(found) if isinstance(found, list) else [found]
-
-
-def _ended(process, seconds):
-    """Waits so long for the end of a process. Where the system has handles of processes it wakes at once; a wait with
-    a limit looks twenty times a second, which is long beside a short run."""
-    if not hasattr(os, "pidfd_open"):
-        try:
-            process.wait(timeout=seconds)
-        except subprocess.TimeoutExpired:
-            return False
-        return True
-    handle = os.pidfd_open(process.pid)
-    try:
-        select.select([handle], [], [], seconds)
-    finally:
-        os.close(handle)
-    return process.poll() is not None
 
 
 def _limit(most):
@@ -292,14 +274,18 @@ def _localised(folder):
     """What a run says of localisation: a sentence, or the share of the shear work in its ledger. Empty: nothing."""
     for line in (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").splitlines():
         if "localis" in line.lower():
-            return line.strip()
+            return line.strip().removeprefix("mud_host: warning: ").removesuffix(".")
     try:
         share = HostRun(folder).ledger.get("localised")
     except InputError:
         return ""
     if share is None or not len(share) or share.dtype.kind != "f" or share.max() <= LOCALISED:
         return ""
-    return f"{100 * share.max():.2g} % of the shear work is done where the soil has lost ellipticity"
+    return (
+        f"{100 * share.max():.2g} % of the shear work is done where the tangent of the soil has lost ellipticity: "
+        "displacements there depend on the cell and have no limit: state the cell with them, or give the region a "
+        "viscosity"
+    )
 
 
 def find_host(host: str = "") -> str:

@@ -2,17 +2,21 @@
 !> Small scenes for the tests of the host, written as text so that the reader of scenes takes part.
 module host_problems
    use, intrinsic :: iso_fortran_env, only: int64
+   use energy_ledger, only: ledger_t
    use kinds, only: wp
+   use ledger_observer, only: ledger_observer_t
    use model_builder, only: build_model
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
+   use run_observer, only: observers_t
    use run_setup, only: prepare_run
    use run_state, only: run_t
    use model_types, only: model_t
    use faults, only: fault_t
+   use time_stepping, only: run_stages
    implicit none (type, external)
    private
-   public :: build, ask, sand, soil_laws, square
+   public :: build, ask, run_with_ledger, sand, soil_laws, square
 
    character(*), parameter, public :: NL = new_line('a')
 contains
@@ -26,6 +30,22 @@ contains
       call ask(text, model, run, fault)
       if (fault%code /= 0) error stop 'a test scene was refused'
    end subroutine build
+
+   !> Runs all stages; the ledger at their end.
+   subroutine run_with_ledger(model, run, ledger, fault)
+      type(model_t), intent(inout) :: model
+      type(run_t), intent(inout) :: run
+      type(ledger_t), intent(out) :: ledger
+      type(fault_t), intent(inout) :: fault
+      type(observers_t) :: observers
+
+      call observers%add(ledger_observer_t())
+      call run_stages(model, run, fault, observers)
+      select type (observer => observers%list(1)%observer)
+      type is (ledger_observer_t)
+         ledger = observer%ledger
+      end select
+   end subroutine run_with_ledger
 
    !> The same, with the fault for the caller.
    subroutine ask(text, model, run, fault)

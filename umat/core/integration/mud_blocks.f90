@@ -3,14 +3,14 @@
 module mud_blocks
    use mud_kinds, only: wp
    use mud_cutoff, only: held_tangent, soil_void_ratio, MODE_HELD
-   use mud_elastic, only: bulk_modulus, shear_modulus, elastic_tangent
-   use mud_increment, only: increment_t, has_elastic_part, direction_at
+   use mud_elastic, only: bulk_modulus, centre_modulus, elastic_tangent
+   use mud_increment, only: increment_t, has_elastic_part, direction_at, end_in_domain
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ELASTIC
    use mud_state, only: state_t
    use mud_tangent, only: continuum_tangent
-   use mud_tensor, only: SHEAR_WEIGHT, outer_add
+   use mud_tensor, only: SHEAR_WEIGHT, outer_add, trace
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -26,16 +26,19 @@ module mud_blocks
 
 contains
    !> Blocks of an elastic response at a state. Units as in blocks_t; those of S_w stay as they are. Stress does not
-   !> follow suction. docs/theory/material.md section 3.1.
+   !> follow suction. docs/theory/material.md section 3.1, docs/theory/memory-rules.md section 4.3.
    pure subroutine elastic_blocks(par, state, blocks)
       type(params_t), intent(in) :: par
       type(state_t), intent(in) :: state
       type(blocks_t), intent(inout) :: blocks
-      real(wp) :: p, r(6)
+      real(wp) :: p, r(6), e, k, from_centre
 
       call stress_ratio(par, state%sigma, p, r)
-      blocks%dsig_deps = elastic_tangent(bulk_modulus(par, soil_void_ratio(state), p), &
-                                         shear_modulus(par, soil_void_ratio(state), p))
+      e = soil_void_ratio(state)
+      from_centre = 0.0_wp
+      if (par%rho_e > 0.0_wp) from_centre = trace(state%from_centre)
+      k = bulk_modulus(par, e, p)
+      blocks%dsig_deps = elastic_tangent(k, centre_modulus(par, e, k, from_centre))
       blocks%dsig_dpc = 0.0_wp
    end subroutine elastic_blocks
 
@@ -51,20 +54,26 @@ contains
       if (trial%mode == MODE_HELD) then
          call held_tangent(par, inc, state, blocks%dsig_deps, blocks%dsig_dpc)
          return
+      else if (trial%closed) then
+         call elastic_blocks(par, state, blocks)
+         return
       end if
       call continuum_tangent(par, trial%w(inc%scheme%stages), blocks%dsig_deps, blocks%dsig_dpc)
-      if (has_elastic_part(inc, trial%mode)) call project(inc, trial%mode, trial%w(inc%scheme%stages), blocks%dsig_deps)
+      if (has_elastic_part(inc, trial%mode)) &
+         call project(par, inc, trial%mode, trial%w(inc%scheme%stages), state, blocks%dsig_deps)
    end subroutine continuum_blocks
 
    !> Tangent of a rate of which only the strain along nu loads (inside the domain none), the rest being elastic.
-   pure subroutine project(inc, mode, w, c)
+   pure subroutine project(par, inc, mode, w, state, c)
+      type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
       type(rate_t), intent(in) :: w
+      type(state_t), intent(in) :: state   !< at the end of the increment
       real(wp), intent(inout) :: c(6, 6)
       real(wp) :: nu(6), along(6), elastic(6, 6)
 
-      elastic = elastic_tangent(w%k, w%g)
+      elastic = elastic_tangent(w%k, centre_modulus(par, state%e, w%k, trace(end_in_domain(inc))))
       along = 0.0_wp
       nu = 0.0_wp
       if (mode /= MODE_ELASTIC) then

@@ -13,6 +13,7 @@ module mud_consistent
    use mud_fluidity, only: recovery
    use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, live_numbers, &
       NY
+   use mud_inside_domain, only: changes_inside
    use mud_params, only: params_t
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
@@ -23,7 +24,7 @@ module mud_consistent
    use mud_sensitivity, only: changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: IDENTITY, norm, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
+   use mud_tensor, only: IDENTITY, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, change_of_left, &
       add_changes_of_faded
    use mud_trial, only: trial_t
@@ -111,6 +112,8 @@ contains
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, sens%parts, trial%y0(1:6), trial%time, h, sens%shift, dh, &
                                    sens%driving, sens%y)
+      else if (trial%closed) then
+         call changes_inside(par, inc, trial%y0, trial%time, h, sens%shift, dh, sens%driving, sens%y)
       else
          call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, sens%at_rest, .false., &
                               sens%shift, sens%r_in, sens%driving, sens%y, rates(:, :, 1))
@@ -182,6 +185,8 @@ contains
       y = 0.0_wp
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, none, trial%y0(1:6), trial%time, h, none, one, AT_REST, y)
+      else if (trial%closed) then
+         call changes_inside(par, inc, trial%y0, trial%time, h, none, one, AT_REST, y)
       else
          call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, rates, y, &
                              margin)
@@ -294,7 +299,7 @@ contains
       real(wp), dimension(DIRECTIONS, NY) :: far, half
       real(wp) :: speed(DIRECTIONS)
 
-      speed = contracted(sens%driving%d_strain, inc%d_strain)/(norm(inc%d_strain)*inc%rho)
+      speed = contracted(sens%driving%d_strain, inc%d_strain)/(inc%length*inc%rho)
       associate (transient => trial%transient, at_rest => sens%at_rest, shift => sens%shift)
          if (transient%terms == 0) then
             call change_of_stage(par, without_turn(inc), MODE_ORDINARY, trial%w(1), trial%y0, trial%time, at_rest, &

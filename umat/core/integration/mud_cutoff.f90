@@ -289,7 +289,7 @@ contains
       real(wp), intent(in) :: e, d_rate, de, d_strain(6), d_pc
       real(wp) :: length
 
-      length = norm(inc%d_strain)
+      length = inc%length
       change = w%k*length*de*bulk_slope(e) + sign(1.0_wp, inc%d_pc)*d_pc
       if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
       change = d_rate - closing_share(openings)*change
@@ -316,7 +316,7 @@ contains
       type(increment_t), intent(in) :: inc
       type(rate_t), intent(in) :: w
 
-      elastic_length = w%k*norm(inc%d_strain) + abs(inc%d_pc)
+      elastic_length = w%k*inc%length + abs(inc%d_pc)
    end function elastic_length
 
    !> Stress ratio of a held point after a step h that begins at r0 at a pseudo-time. r0, r, time and h [-], the last

@@ -128,7 +128,7 @@ contains
       per_divisor = 1.0_wp/turning%divisor
       per_rho = 1.0_wp/turning%rho
       per_length = 1.0_wp/turning%length
-      d_u = ddot(turning%d, turning%u)
+      d_u = turning%cosine*turning%rho
       by%length = contracted(increment_changes, turning%u)
       by%d_on_u = contracted(d_changes, turning%u)
       by%increment_on_d = contracted(increment_changes, turning%d)

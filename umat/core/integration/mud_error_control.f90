@@ -49,7 +49,8 @@ contains
       jump = .false.
       changes = .false.
       kink = .false.
-      if (trial%mode /= MODE_HELD) call compare_stages(trial%w(1:inc%scheme%stages), changes, kink)
+      if (trial%mode /= MODE_HELD .and. .not. trial%closed) &
+         call compare_stages(trial%w(1:inc%scheme%stages), changes, kink)
       changes = changes .and. trial%mode == MODE_ORDINARY .and. par%guarded
       if (.not. may_grow) jump = error > control%error*(h/control%h)**FIRST_ORDER
       if (jump .and. changes) control%jumps = control%jumps + 1

@@ -84,7 +84,7 @@ contains
             possible = inc%rests
             if (possible) possible = margin_after(par, inc, trial, h) > SMALL_MARGIN*par%tolerance
          case (EVENT_UNLOAD)
-            possible = par%remembers .and. .not. inc%rests
+            possible = par%remembers .and. .not. (inc%rests .or. trial%closed)
             if (.not. possible) return
             associate (w => trial%w(inc%scheme%stages))
                possible = h*drive_of_margin(par, inc, trial%time + h, w) < -SMALL_MARGIN*par%tolerance

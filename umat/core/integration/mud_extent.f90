@@ -8,7 +8,6 @@ module mud_extent
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_state, only: state_t
-   use mud_tensor, only: norm
    implicit none (type, external)
    private
    public :: extent_of
@@ -21,7 +20,7 @@ contains
       type(state_t), intent(in) :: state
       real(wp) :: p, r(6)
 
-      size = norm(inc%d_strain)
+      size = inc%length
       if (abs(inc%d_pc) <= 0.0_wp) return
       call stress_ratio(par, state%sigma, p, r)
       size = size + abs(inc%d_pc)/bulk_modulus(par, soil_void_ratio(state), p)

@@ -4,9 +4,11 @@ module mud_increment
    use mud_kinds, only: wp, NOTHING
    use mud_params, only: params_t
    use mud_state, only: counters_t
-   use mud_tensor, only: IDENTITY, LANES, ddot, trace, deviator, norm, tensors_t, contracted
+   use mud_tensor, only: LANES, ddot, trace, traces, norm, tensors_t, contracted, &
+      UNIT_STRAINS, ANY_TENSORS
    use mud_loading, only: loading_t, no_strain, whole_strain
    use mud_bonding, only: is_bonded
+   use mud_elastic, only: centre_modulus
    use mud_fluidity, only: recovery
    use mud_rate, only: rate_t
    use mud_rates, only: rate_at, MODE_ORDINARY, MODE_ELASTIC
@@ -15,9 +17,9 @@ module mud_increment
    use mud_substep, only: scheme_t, SCHEMES
    implicit none (type, external)
    private
-   public :: increment_t, new_increment, take_phase, end_in_domain, direction_at, void_ratio_at, suction_at, rate_of, &
-             store_rate, loading_strain, changes_of_loading_strain, has_elastic_part, live_numbers, NY, &
-             SHORTEST_PHASE, STRAIGHT
+   public :: increment_t, new_increment, take_phase, end_in_domain, volume_from_centre, direction_at, void_ratio_at, &
+             suction_at, rate_of, store_rate, loading_strain, changes_of_loading_strain, has_elastic_part, &
+             live_numbers, NY, SHORTEST_PHASE, STRAIGHT
 
    !> Length of the integrated vector: sigma'(6), z(6), plastic shear, of the cyclic preloading ln chi' and, since the
    !> substep began, contraction, and fluidity.
@@ -32,6 +34,7 @@ module mud_increment
    !> An increment, and the phase of it that is being integrated. Pseudo-time runs from 0 to 1 over the whole of it.
    type :: increment_t
       real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
+      real(wp) :: length            !< Norm of the strain [-].
       real(wp) :: rho               !< Radius of the elastic domain, 0: none [-].
       real(wp) :: exit              !< Where the strain leaves the elastic domain, 1: it does not [-].
       real(wp) :: from_centre(6)    !< Strain from its centre, there or, if it stays inside, at the start [-].
@@ -55,14 +58,18 @@ contains
       type(rate_t), intent(inout) :: w
       type(counters_t), intent(inout) :: counters
       type(rate_t), intent(in), optional :: near   !< Rate nearby, as rate_at has it.
-      real(wp) :: loading(6), aside(6)
+      real(wp) :: loading(6), aside(6), from_centre, e, g, volume
 
       if (has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)) then
-         call loading_strain(inc, mode, time, loading, aside)
-         call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
+         call loading_strain(inc, mode, time, loading, aside, from_centre)
+         e = void_ratio_at(inc, time)
+         call rate_at(par, inc%bonded, y(1:6), e, suction_at(inc, time), y(7:12), r_in, &
                       loading, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
-         w%d_p = w%d_p + w%k*trace(aside)
-         w%d_sigma = w%d_sigma + 2.0_wp*w%g*deviator(aside) + (w%k*trace(aside))*IDENTITY
+         g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)
+         volume = trace(aside)
+         w%d_p = w%d_p + w%k*volume
+         w%d_sigma = w%d_sigma + g*aside
+         w%d_sigma(1:3) = w%d_sigma(1:3) + (w%k - g/3.0_wp)*volume
       else
          call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
                       inc%d_strain, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
@@ -107,19 +114,42 @@ contains
       has_elastic_part = mode == MODE_ELASTIC .or. (inc%rho > 0.0_wp .and. .not. inc%inside .and. mode == MODE_ORDINARY)
    end function has_elastic_part
 
-   !> The part of the strain rate that loads, along nu, and the elastic rest. All [-]; docs/theory/memory-rules.md
-   !> section 4.1.
-   pure subroutine loading_strain(inc, mode, time, loading, aside)
+   !> The part of the strain rate that loads, along nu, and the elastic rest; the volumetric strain from the centre of
+   !> the domain. All [-]; docs/theory/memory-rules.md section 4.1.
+   pure subroutine loading_strain(inc, mode, time, loading, aside, from_centre)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
       real(wp), intent(in) :: time
-      real(wp), intent(out) :: loading(6), aside(6)
+      real(wp), intent(out) :: loading(6), aside(6), from_centre
       real(wp) :: nu(6)
 
-      nu = 0.0_wp
-      if (mode /= MODE_ELASTIC) nu = direction_at(inc, time)
-      call part(inc, nu, loading, aside)
+      if (mode == MODE_ELASTIC) then
+         loading = 0.0_wp
+         aside = inc%d_strain
+         from_centre = volume_from_centre(inc, time)
+      else
+         nu = direction_at(inc, time)
+         call part(inc, nu, loading, aside)
+         from_centre = inc%rho*trace(nu)
+      end if
    end subroutine loading_strain
+
+   !> Share of the strain to add to inc%from_centre at a pseudo-time inside the domain [-].
+   pure real(wp) function since_centre(inc, time)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+
+      since_centre = time
+      if (inc%exit < 1.0_wp) since_centre = time - inc%exit
+   end function since_centre
+
+   !> Volumetric strain from the centre at a pseudo-time inside the domain [-]. docs/theory/memory-rules.md section 4.3.
+   pure real(wp) function volume_from_centre(inc, time)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time
+
+      volume_from_centre = trace(inc%from_centre) + since_centre(inc, time)*inc%d_v
+   end function volume_from_centre
 
    !> The part of the strain along a direction, if it is forwards, and the rest.
    pure subroutine part(inc, nu, loading, aside)
@@ -130,12 +160,13 @@ contains
 
       loading = 0.0_wp
       along = ddot(nu, inc%d_strain)
-      if (along > ACROSS*norm(inc%d_strain)) loading = along*nu
+      if (along > ACROSS*inc%length) loading = along*nu
       aside = inc%d_strain - loading
    end subroutine part
 
    !> Changes of the part that loads with the strain rate and the elastic domain at the start, at a pseudo-time that
-   !> itself changes by dt. All [-]; derivative of docs/theory/memory-rules.md sections 4.1, 4.2.
+   !> itself changes by dt, and those of the volumetric strain from its centre. All [-]; derivative of
+   !> docs/theory/memory-rules.md sections 4.1, 4.2.
    pure subroutine changes_of_loading_strain(inc, mode, time, strain, centre, dt, loading)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: mode
@@ -153,6 +184,11 @@ contains
          return
       else if (mode == MODE_ELASTIC) then
          call no_strain(inc%d_strain, loading)
+         loading%beside = .true.
+         loading%aside = .true.
+         loading%from_centre = volume_from_centre(inc, time)
+         loading%of_volume = since_centre(inc, time)*traces(strain) + inc%d_v*dt
+         if (centre%kind == ANY_TENSORS) loading%of_volume = loading%of_volume + traces(centre)
          return
       else if (inc%straight) then
          call changes_of_straight_strain(inc, time, strain, loading)
@@ -167,6 +203,8 @@ contains
       loading%basis(:, 1) = turning%d
       loading%basis(:, 2) = turning%u
       loading%turns = .true.
+      loading%beside = .true.
+      loading%aside = .true.
       loading%part = along*nu
       loading%whole = [0.0_wp, turning%length]
       loading%of_strain = along*by%of_increment
@@ -186,6 +224,20 @@ contains
          loading%along(j, 1) = along*by%along_d(j) + nu(1)*turn + nu_rate(1)*dt(j)
          loading%along(j, 2) = along*by%along_u(j) + nu(2)*turn + nu_rate(2)*dt(j)
       end do
+      ! d = rho nu
+      loading%from_centre = inc%rho*trace(turning%nu)
+      on_d = inc%rho*trace(turning%d)
+      on_length = inc%rho*inc%d_v/turning%length
+      turn_rate = inc%d_v - along*(loading%from_centre/inc%rho)
+      do j = 1, LANES
+         loading%of_volume(j) = on_d*by%along_d(j) + on_length*by%along_u(j) + turn_rate*dt(j)
+      end do
+      if (strain%kind == UNIT_STRAINS) then
+         loading%of_volume(1:3) = loading%of_volume(1:3) + inc%rho*by%of_increment
+      else
+         loading%of_volume = loading%of_volume + (inc%rho*by%of_increment)*traces(strain)
+      end if
+      if (centre%kind == ANY_TENSORS) loading%of_volume = loading%of_volume + (inc%rho*by%of_d)*traces(centre)
    end subroutine changes_of_loading_strain
 
    !> Changes of the loading part of a strain a along nu, all of which loads: (nu:a) nu changes with a by 1 - q across
@@ -196,14 +248,15 @@ contains
       real(wp), intent(in) :: time
       type(tensors_t), intent(in) :: strain
       type(loading_t), intent(inout) :: loading
-      real(wp) :: length, decay
+      real(wp) :: decay
 
-      length = norm(inc%d_strain)
-      decay = decay_at(inc%rho, length, time - inc%exit)
+      decay = decay_at(inc%rho, inc%length, time - inc%exit)
       call whole_strain(inc%d_strain, loading)
       loading%of_strain = 1.0_wp - decay
-      loading%of_centre = decay*length/inc%rho
-      loading%along(:, 1) = (decay/length**2)*contracted(strain, inc%d_strain)
+      loading%of_centre = decay*inc%length/inc%rho
+      loading%along(:, 1) = (decay/inc%length**2)*contracted(strain, inc%d_strain)
+      loading%beside = .true.
+      loading%from_centre = inc%rho*inc%d_v/inc%length
    end subroutine changes_of_straight_strain
 
    !> An increment of a point with void ratio e, suction p_c and a strain from_centre of the elastic domain. e and
@@ -221,6 +274,7 @@ contains
       inc%p_c0 = p_c
       inc%e0 = e
       inc%d_v = trace(d_strain)
+      inc%length = norm(d_strain)
       inc%scheme = SCHEMES(max(par%scheme, 1))   ! automatic: chosen for every attempt
       inc%rests = .false.
       inc%rho = par%rho_e
@@ -239,7 +293,7 @@ contains
          inc%from_centre = inc%from_centre + inc%exit*d_strain
          inc%from_centre = (inc%rho/norm(inc%from_centre))*inc%from_centre
          ! twice the sine of half the angle
-         inc%straight = norm(inc%from_centre/inc%rho - d_strain/norm(d_strain)) < STRAIGHT
+         inc%straight = norm(inc%from_centre/inc%rho - d_strain/inc%length) < STRAIGHT
       end if
    end subroutine new_increment
 

@@ -11,7 +11,7 @@ module mud_isotropic_memory
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
    use mud_substep, only: MAX_STAGES
-   use mud_tensor, only: LANES, norm, trace
+   use mud_tensor, only: LANES, trace
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -36,7 +36,7 @@ contains
       e = void_ratio_at(inc, time)
       m = measure(par, w%bond, e, w%p, w%k)
       drive = (m%by_p*w%k - m%by_e*(1.0_wp + e))*(inc%d_v + w%swell) + m%by_pc*inc%d_pc &
-              + ROUNDING*abs(m%by_p)*w%k*norm(inc%d_strain)
+              + ROUNDING*abs(m%by_p)*w%k*inc%length
    end function drive_of_margin
 
    !> Rate at which contraction by shear, or dilation, changes the margin at the virgin state, beside the measure [-].
@@ -81,7 +81,7 @@ contains
       margin = 0.0_wp
       rates = 0.0_wp
       first = 0.0_wp
-      do i = 1, inc%scheme%stages
+      do i = 1, merge(1, inc%scheme%stages, trial%closed)
          e = void_ratio_at(inc, trial%time + inc%scheme%node(i)*h)
          m = measure(par, trial%w(i)%bond, e, trial%w(i)%p, trial%w(i)%k)
          if (i == 1) first = m%value

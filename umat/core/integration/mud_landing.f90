@@ -1,13 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Shortens a substep so that it ends at the event inside it; docs/theory/integration.md section 4.1.
 module mud_landing
-   use mud_cutoff, only: height_rate, MODE_HELD
+   use mud_cutoff, only: height_rate
    use mud_event_functions, only: event_function, rate_at_start, rate_at_end
    use mud_event_table, only: EVENTS, EVENT_OPENS, BEFORE, BEYOND
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
+   use mud_rates, only: MODE_ORDINARY
    use mud_state, only: counters_t
    use mud_tensor, only: ddot
    use mud_trial, only: trial_t, take_step
@@ -129,7 +130,7 @@ contains
       type(trial_t), intent(in) :: trial
 
       width = JUMP_SHARE*h/max(error, 1.0_wp)
-      if (trial%mode /= MODE_HELD) then   ! a held point has no stages
+      if (trial%mode == MODE_ORDINARY) then   ! others have no direction
          if (ddot(trial%w(1)%n, trial%w(inc%scheme%stages)%n) < OPPOSITE) width = 0.0_wp
       end if
       width = max(width, EVENT_TOLERANCE)

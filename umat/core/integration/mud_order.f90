@@ -81,7 +81,7 @@ contains
       real(wp) :: error
 
       size = h*factor
-      if (par%scheme /= SCHEME_AUTOMATIC .or. trial%mode == MODE_HELD) return
+      if (par%scheme /= SCHEME_AUTOMATIC .or. trial%mode == MODE_HELD .or. trial%closed) return
       if (inc%scheme%order == SECOND_ORDER%order) then
          size = size/par%second_share
       else if (whole .and. inc%scheme%first_same_as_last) then

@@ -17,7 +17,7 @@ module mud_substepping
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
    use mud_rates, only: MODE_ORDINARY
-   use mud_tensor, only: ddot, norm, is_finite, all_finite
+   use mud_tensor, only: ddot, is_finite, all_finite
    use mud_trace, only: SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transient, only: find_transient
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
@@ -184,7 +184,7 @@ contains
       ! a whole number of pieces, so that a small change of the strain does not change their size
       if (step%turns) then
          piece = TURN_PIECE*it%inc%rho*max(NARROW/sqrt(turn), 1.0_wp)
-         pieces = real(ceiling(min(length*norm(it%inc%d_strain)/piece, 1.0e6_wp)), wp)
+         pieces = real(ceiling(min(length*it%inc%length/piece, 1.0e6_wp)), wp)
          step%h = min(step%h, length/(share*pieces))
       end if
    end function first_step
@@ -197,7 +197,7 @@ contains
 
       turn_of = 0.0_wp
       if (inc%rho <= 0.0_wp .or. inc%inside .or. inc%straight) return
-      length = norm(inc%d_strain)
+      length = inc%length
       if (length > 0.0_wp) turn_of = 1.0_wp - ddot(direction_at(inc, inc%from), inc%d_strain)/length
    end function turn_of
 end module mud_substepping

@@ -56,7 +56,7 @@ contains
       real(wp) :: length, across, now(NY), far(NY), half(NY)
 
       if (transient%sought .or. .not. has_elastic_part(inc, MODE_ORDINARY) .or. .not. first%loading) return
-      length = norm(inc%d_strain)
+      length = inc%length
       if (length*h < LONG*inc%rho .or. length*(inc%to - time) < LN_2*inc%rho) return
       across = 0.0_wp   ! twice the sine of half the angle
       if (.not. inc%straight) across = norm(direction_at(inc, time) - inc%d_strain/length)
@@ -186,6 +186,12 @@ contains
          along(:, 1) = along(:, 1) - weight*d_left(:, i)
          along(:, 2) = along(:, 2) - (2.0_wp*weight*left(i))*d_left(:, i)
       end do
+      if (transient%terms == 1) then
+         do i = 1, live
+            y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1) + along(:, 1)*transient%parts(i, 1)
+         end do
+         return
+      end if
       do i = 1, live
          y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1) + factors(2)*fading%parts(:, i, 2) &
                    + along(:, 1)*transient%parts(i, 1) + along(:, 2)*transient%parts(i, 2)

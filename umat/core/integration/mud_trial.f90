@@ -4,6 +4,7 @@ module mud_trial
    use mud_kinds, only: wp
    use mud_cutoff, only: hold, MODE_HELD
    use mud_increment, only: increment_t, rate_of, store_rate, NY
+   use mud_inside_domain, only: has_closed_form, move_inside
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_relaxation, only: relaxation_t, relax
@@ -29,6 +30,7 @@ module mud_trial
       type(rate_t) :: w(MAX_STAGES) !< Rates of the stages with all intermediate results; the first is that of the
                                     !< memory as it is.
       integer :: mode
+      logical :: closed             !< Inside the domain, in closed form: of its stages only the first is set.
       logical :: pressed            !< The bounding surface was met inside the elastic domain: ordinary rates follow.
       real(wp) :: r_in(6)
       real(wp) :: time              !< Pseudo-time of y0 [-].
@@ -58,6 +60,13 @@ contains
       if (trial%mode == MODE_HELD) then
          trial%y = trial%y0
          call hold(par, inc, trial%parts, trial%time, h, trial%y(1:6), trial%held_error)
+         trial%closed = .false.
+         return
+      end if
+      trial%closed = has_closed_form(par, inc, trial%mode, trial%time, h, trial%y0(1:6))
+      if (trial%closed) then
+         trial%y = trial%y0
+         call move_inside(par, inc, trial%time, h, trial%y)
          return
       end if
       call store_rate(trial%w(1), trial%rates(:, 1))
@@ -90,6 +99,8 @@ contains
          error = trial%held_error*par%p_min/smallest
          return
       end if
+      error = 0.0_wp
+      if (trial%closed) return
       call error_vector(scheme, trial%rates, h, delta)
       error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(7:12))/par%z_max, &
                   abs(delta(13))/PLASTIC_SHEAR_SCALE)

@@ -8,7 +8,8 @@ module mud_linearise
    use mud_bonding, only: bonding_curvature, bonding_with_turn
    use mud_critical_state, only: state_parameter_slopes, bounding_slope, lode_gradient
    use mud_direction_equation, only: turn_t, find_turn
-   use mud_elastic, only: bulk_slope, shear_slope, swelling_slope, BULK_EXPONENT, SHEAR_EXPONENT
+   use mud_elastic, only: bulk_slope, shear_slope, swelling_slope, centre_modulus, changed_centre_modulus, &
+      BULK_EXPONENT, SHEAR_EXPONENT
    use mud_loading, only: loading_t
    use mud_hardening, only: kinematic_slope, isotropic_slopes_t, isotropic_slopes, BY_P, BY_E, BY_F, BY_F_E, BY_R, &
       BY_R_B
@@ -27,6 +28,9 @@ module mud_linearise
       real(wp) :: with_turn(3)              !< slopes of f, df/dp_c, df/de by ln x of the branch's turn [-, 1/kPa, -]
       real(wp) :: psi_f, psi_p, m_b_psi     !< slopes of psi by f and p', of M^b by psi [-, 1/kPa, -]
       real(wp) :: k_slope, g_slope, b_slope !< d ln K/de, d ln G/de, d ln b_0/de [-]
+      logical :: aside                      !< A part of the strain rate does not load.
+      real(wp) :: g_centre                  !< Shear modulus of what does not [kPa] ...
+      real(wp) :: g_centre_slopes(3)        !< ... and slopes by ln p', e, volume from the centre, if aside [kPa].
       real(wp) :: per_p, per_f, per_gamma, per_y   !< Reciprocals of p', f, gamma, y.
       real(wp) :: lode_r, lode_r_slope(6)   !< Lode factor in the direction of r and its gradient, a deviator ...
       type(isotropic_slopes_t) :: mechanism   !< ... and slopes of the isotropic mechanism, where it acts.
@@ -90,6 +94,13 @@ contains
       lin%k_slope = bulk_slope(e)
       lin%g_slope = shear_slope(e)
       lin%b_slope = kinematic_slope(par, e)
+      lin%aside = loading%aside
+      lin%g_centre = w%g
+      if (loading%aside) then
+         call changed_centre_modulus(par, e, w%k, loading%from_centre, lin%g_centre, lin%g_centre_slopes)
+      else if (loading%beside) then
+         lin%g_centre = centre_modulus(par, e, w%k, loading%from_centre)
+      end if
       lin%per_p = 1.0_wp/w%p
       lin%per_f = 1.0_wp/w%bond%f
       if (w%iso_active) then
@@ -115,6 +126,7 @@ contains
       if (w%iso_active) b = w%iso%b
       x%mean = 0.0_wp
       x%p = 0.0_wp
+      x%share = 0.0_wp
       x%k = 0.0_wp
       x%g = 0.0_wp
       x%k_e = 0.0_wp

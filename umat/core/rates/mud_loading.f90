@@ -12,9 +12,13 @@ module mud_loading
    type :: loading_t
       real(wp) :: basis(6, 2)             !< the fixed tensors: what loads is the sum of part times them
       logical :: turns                    !< the domain turns; otherwise the second tensor is zero
+      logical :: aside                    !< a part of the strain rate does not load
+      logical :: beside                   !< a part of its changes does not
       real(wp) :: part(2), whole(2)       !< factors of what loads, of the whole strain rate
       real(wp) :: of_strain, of_centre    !< factors of the changes of strain rate and centre
       real(wp) :: along(LANES, 2)         !< changes along the fixed tensors
+      real(wp) :: from_centre             !< volumetric strain from the centre of the elastic domain, if beside
+      real(wp) :: of_volume(LANES)        !< changes of that, if aside
    end type loading_t
 contains
    !> All of a strain rate loads. d_strain [-].
@@ -25,6 +29,8 @@ contains
       loading%basis(:, 1) = d_strain
       loading%basis(:, 2) = 0.0_wp
       loading%turns = .false.
+      loading%aside = .false.
+      loading%beside = .false.
       loading%whole = [1.0_wp, 0.0_wp]
       loading%part = loading%whole
       loading%of_strain = 1.0_wp

@@ -197,8 +197,8 @@ contains
       end associate
    end subroutine turn_direction
 
-   !> Changes of the rate of stress: d sigma' = 2 d(G e) - 2 G L dn - 2 n d(G L) + I dp', e the deviator of the whole
-   !> strain rate.
+   !> Changes of the rate of stress: d sigma' = 2 d(G_c e) + 2 d((G - G_c) e_l) - 2 G L dn - 2 n d(G L) + I dp', e the
+   !> deviator of the whole strain rate, e_l that of what loads.
    pure subroutine fill_stress(w, lin, y, strain, centre, changes, x, rates)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
@@ -208,24 +208,34 @@ contains
       type(lanes_t), intent(in) :: x
       real(wp), intent(out) :: rates(LANES, 6)
       type(sum_t) :: s
-      real(wp) :: drag, v(LANES)
+      real(wp) :: drag, more, v(LANES), dg_less
       integer :: j
 
       drag = -2.0_wp*w%g*w%l
+      more = 2.0_wp*(w%g - lin%g_centre)
       v = traces(strain)
-      s%of_whole = 2.0_wp*w%g
-      s%of_loading = drag*x%turn%of_loading
+      s%of_whole = 2.0_wp*lin%g_centre
+      s%of_loading = drag*x%turn%of_loading + more
       s%of_stress = drag*x%turn%of_stress
-      associate (whole => changes%loading%whole)
+      associate (whole => changes%loading%whole, part => changes%loading%part, along => changes%loading%along)
          do j = 1, LANES
-            s%first(j) = drag*x%turn%first(j) + (2.0_wp*whole(1))*x%g(j)
-            s%second(j) = drag*x%turn%second(j) + (2.0_wp*whole(2))*x%g(j)
+            s%first(j) = drag*x%turn%first(j) + (2.0_wp*whole(1))*x%g(j) + more*along(j, 1)
+            s%second(j) = drag*x%turn%second(j) + (2.0_wp*whole(2))*x%g(j) + more*along(j, 2)
             s%n(j) = drag*x%turn%n(j) - 2.0_wp*(w%l*x%g(j) + w%g*x%dl(j))
             s%r(j) = drag*x%turn%r(j)
             s%p(j) = drag*x%turn%p(j) + x%volumetric(j) - (w%l*w%d)*x%k_e(j) - w%k_e*x%flow(j) &
                      + (lin%whole_v - lin%d_v)*x%k(j) + w%k*(v(j) - x%v(j)) &
-                     - (2.0_wp/3.0_wp*lin%whole_v)*x%g(j) - (2.0_wp/3.0_wp*w%g)*v(j)   ! deviators
-         end do
+                     - (2.0_wp*(lin%whole_v*x%g(j) + lin%g_centre*v(j)) + more*x%v(j))*(1.0_wp/3.0_wp)
+         end do   ! deviators
+         if (lin%aside) then
+            do j = 1, LANES
+               dg_less = 2.0_wp*(lin%g_centre_slopes(1)*x%share(j) + lin%g_centre_slopes(2)*changes%e(j) &
+                                 + lin%g_centre_slopes(3)*changes%loading%of_volume(j) - x%g(j))
+               s%first(j) = s%first(j) + (whole(1) - part(1))*dg_less
+               s%second(j) = s%second(j) + (whole(2) - part(2))*dg_less
+               s%p(j) = s%p(j) - ((lin%whole_v - lin%d_v)*dg_less)*(1.0_wp/3.0_wp)
+            end do
+         end if
       end associate
       call add_up(w, y, strain, centre, changes, s, rates)
    end subroutine fill_stress

@@ -14,7 +14,7 @@ PAGE = Page(
     input="`scenes.py`: traps that hide an effect, and scenes that need few",
     reference="what is known of each scene: its traps were made on purpose",
     seconds=25, quick=4)
-MAKES = (Script("study.py", ("results.csv",), 60),)
+MAKES = (Script("study.py", ("results.csv",), 60), Script("cost.py", ("cost.csv",), 150))
 
 NONE = Tolerance("every decision is known beforehand", absolute=0.0)
 QUICK = ("clamped slab", "pulse")
@@ -44,6 +44,12 @@ def texts(bench):
         lines.append((scene.name, scene.what, ", ".join(on), ", ".join(off), most))
     wrong = sum(r["wanted"] not in ("", r["on"]) for r in rows)
     known = sum(bool(r["wanted"]) for r in rows)
-    return {"README.md": {"effects": tables.markdown(
+    cost = tables.rows(pathlib.Path(__file__).parent / "cost.csv")
+    most = max(float(r["share"]) for r in cost)
+    priced = tables.markdown(
+        ("scene", "pilots", "their time [s]", "run quoted at [s]", "run [s]", "share", "left out"),
+        [(r["scene"], r["pilots"], r["spent"], r["quoted"], r["run"], f"{100*float(r['share']):.2g} %",
+          r["off"].replace(" ", ", ").replace("_", " ")) for r in cost])
+    return {"README.md": {"cost": priced + f"\nThe largest share is {100*most:.2g} %.\n", "effects": tables.markdown(
         ("scene", "what misleads, or what is plain", "kept", "left out", "the strongest"), lines) + (
         f"\nOf {known} decisions that are known beforehand {wrong} are wrong.\n")}}

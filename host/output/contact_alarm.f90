@@ -4,15 +4,18 @@
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use contact_interfaces, only: contacts_t, probe_contacts, shortest_edge
-   use generalised_alpha, only: DYNAMIC
+   use contact_interfaces, only: probe_contacts, shortest_edge
+   use generalised_alpha, only: has_inertia
+   use faults, only: fault_t
    use model_types, only: model_t
+   use run_observer, only: observer_t, accepted_step_t
+   use run_state, only: run_t
    use scene_types, only: acts_in
    use texts, only: short
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
-   public :: warn_of_penetration, warn_of_overlap
+   public :: contact_alarm_t
 
    !> Depth over the length of the edge from which the warning is given: a curved surface that rolls on leaves about an
    !> eighth of the ratio of edge length to radius, 1e-3 with a mesh that is fine enough for contact [-].
@@ -22,26 +25,34 @@ module contact_alarm
    real(wp), parameter :: ROUNDING_DEPTH = 1.0e-6_wp
    !> Times the depth to which a heavy plate is placed: its share under the edges of the plate differs from the mean.
    real(wp), parameter :: PLACED = 2.0_wp
+
+   type, extends(observer_t) :: contact_alarm_t
+      logical, allocatable :: told(:)   !< (contacts) The warning of penetration has been given.
+   contains
+      procedure :: stage_begins
+      procedure :: step
+   end type contact_alarm_t
 contains
-   !> Where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at once.
-   !> The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4. Raises no
-   !> fault.
-   subroutine warn_of_overlap(model, number, contacts, x)
+   !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
+   !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
+   subroutine stage_begins(self, model, run, number)
+      class(contact_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      integer, intent(in) :: number      !< Of the stage that begins; the contacts act as it says.
-      type(contacts_t), intent(inout) :: contacts
-      real(wp), intent(in) :: x(:, :)    !< (FIELDS, nodes) Displacements first [m].
+      type(run_t), intent(inout) :: run
+      integer, intent(in) :: number
       real(wp) :: depth
       integer :: i, at
 
+      associate (unused => self)
+      end associate
       if (size(model%contacts) == 0) return
-      if (.not. probe_contacts(contacts, x)) return
+      if (.not. probe_contacts(run%system%contacts, run%state%x)) return
       do i = 1, size(model%contacts)
-         if (.not. contacts%interfaces(i)%acts) cycle
+         if (.not. run%system%contacts%interfaces(i)%acts) cycle
          if (number > 1) then
             if (acts_in(model%contacts(i)%stages, model%stages(number - 1)%name)) cycle
          end if
-         associate (t => contacts%interfaces(i), one => model%contacts(i))
+         associate (t => run%system%contacts%interfaces(i), one => model%contacts(i), x => run%state%x)
             at = maxloc(t%probe%pressure, 1)
             depth = t%probe%pressure(at)/one%options%penalty
             if (depth <= ROUNDING_DEPTH*shortest_edge(t%slave)) cycle
@@ -65,30 +76,36 @@ contains
 
          text = 'a dynamic stage throws the surfaces apart. If that is not meant, move the plate or the mesh so '// &
                 'that they only touch, or find the prestress in a static stage before.'
-         if (kind /= DYNAMIC) text = 'the stage finds the prestress. If none is meant, move the plate or the mesh '// &
-            'until they overlap by no more than '//short(least)//' m, which is enough for what contact alone holds.'
+         if (.not. has_inertia(kind)) text = 'the stage finds the prestress. If none is meant, move the plate or '// &
+            'the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact '// &
+            'alone holds.'
       end function advice
-   end subroutine warn_of_overlap
+   end subroutine stage_begins
 
-   !> After an accepted step; once for every contact, on standard error, also where the run is quiet. From 1e-3 of the
-   !> length of an edge on: docs/theory/contact.md section 2.4. Raises no fault.
-   subroutine warn_of_penetration(model, time, contacts)
+   !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
+   !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
+   subroutine step(self, model, run, done, fault)
+      class(contact_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      real(wp), intent(in) :: time   !< [s]
-      type(contacts_t), intent(inout) :: contacts
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
       integer :: i
 
-      if (.not. allocated(contacts%interfaces)) return
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
-            if (.not. t%acts .or. t%told .or. t%result%unpressed <= ALARMING_DEPTH) cycle
-            t%told = .true.
+      associate (unused => done, never => fault)
+      end associate
+      if (.not. allocated(run%system%contacts%interfaces)) return
+      if (.not. allocated(self%told)) allocate (self%told(size(run%system%contacts%interfaces)), source=.false.)
+      do i = 1, size(self%told)
+         associate (t => run%system%contacts%interfaces(i))
+            if (.not. t%acts .or. self%told(i) .or. t%result%unpressed <= ALARMING_DEPTH) cycle
+            self%told(i) = .true.
             call print_warning('contact '//trim(model%contacts(i)%name)//', time '// &
-               short(time)//' s: near ('//short(t%result%unpressed_at(1))//', '//short(t%result%unpressed_at(2))// &
-               ') m the surfaces have penetrated each other by '//short(100*t%result%unpressed)// &
-               ' % of an edge without pressure, which its gaps do not see. Set gap = ''combined'' in &contact, or '// &
-               'refine the slave there.')
+               short(run%next%time)//' s: near ('//short(t%result%unpressed_at(1))//', '// &
+               short(t%result%unpressed_at(2))//') m the surfaces have penetrated each other by '// &
+               short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
+               'gap = ''combined'' in &contact, or refine the slave there.')
          end associate
       end do
-   end subroutine warn_of_penetration
+   end subroutine step
 end module contact_alarm

@@ -7,7 +7,7 @@ module effect_indicators
    use model_types, only: model_t
    use unknown_fields, only: AT_P_W
    use porous_domain, only: state_t, is_present
-   use generalised_alpha, only: STATIC, DYNAMIC
+   use generalised_alpha, only: has_rates, has_inertia
    use texts, only: whole
    implicit none (type, external)
    private
@@ -38,8 +38,8 @@ contains
       integer :: e, at
 
       values = 0.0_wp
-      if (model%stages(stage)%kind /= STATIC) values(1) = sqrt(2*kinetic_energy(model%domain, model%dofs, mass, new))
-      if (model%stages(stage)%kind == DYNAMIC) values(2) = sqrt(maxval(sum(new%a**2, dim=1)))
+      if (has_rates(model%stages(stage)%kind)) values(1) = sqrt(2*kinetic_energy(model%domain, model%dofs, mass, new))
+      if (has_inertia(model%stages(stage)%kind)) values(2) = sqrt(maxval(sum(new%a**2, dim=1)))
       values(3) = max(0.0_wp, maxval(-new%x(AT_P_W, :), mask=model%dofs%of(AT_P_W, :) > 0))
       least = huge(1.0_wp)
       associate (m => model%domain)

@@ -1,35 +1,62 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings of a run whose pore water pressures alternate from node to node (docs/theory/host.md section 3.1), in which
-!> a node of a seepage face lets water in (section 7.7), or in which a material made for compression has lost its mean
-!> effective stress and has no guard that would have kept it.
+!> a node of a seepage face lets water in (section 7.7), the pore water is under a tension that no soil holds (section
+!> 9.2), or in which a material made for compression has lost its mean effective stress and has no guard that would have
+!> kept it.
 module pressure_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use generalised_alpha, only: STATIC
+   use generalised_alpha, only: has_rates
    use material_point, only: lost_pressure, PRESSURE_LOST
+   use faults, only: fault_t
    use model_types, only: model_t
    use porous_domain, only: state_t, is_present, COUPLED
+   use run_observer, only: observer_t, accepted_step_t
+   use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: AT_P_W
    use scene_types, only: stage_t
    implicit none (type, external)
    private
-   public :: lines_t, warn_of_oscillation, warn_lost_pressure, warn_of_inflow, find_lines, find_alternation
+   public :: pressure_alarm_t, lines_t, find_lines, find_alternation
 
    !> Least amplitude of an alternation that is told, share of the range of all pressures: a field that the mesh follows
    !> bends one way at neighbouring nodes and leaves none [-].
    real(wp), parameter :: ALARMING_SHARE = 0.1_wp
    real(wp), parameter :: STRAIGHT = -0.8_wp        !< Cosine of the angle between two sides that go on from each other.
    real(wp), parameter :: SMALLEST_RANGE = 0.1_wp   !< [kPa] Of pressures that anybody looks at.
+   real(wp), parameter :: OVEN_DRY = 1.0e6_wp       !< [kPa] Suction of soil from the oven: none holds water beyond it.
 
    !> Lines of five nodes of a mesh: two sides that go on from each other at a corner.
    type :: lines_t
       integer, allocatable :: nodes(:, :)   !< (5, lines) end, middle, corner, middle, end
       real(wp), allocatable :: share(:)     !< (lines) Weight of the first middle in the mean at the corner [-].
    end type lines_t
+
+   type, extends(observer_t) :: pressure_alarm_t
+      type(lines_t) :: lines   !< Of the mesh; found when they are asked for first.
+      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false., told_dry = .false.
+   contains
+      procedure :: step
+   end type pressure_alarm_t
 contains
-   !> After an accepted step; once a run, on standard error, also where the run is quiet. Not in static stages, nor of
-   !> linear pressures. docs/theory/host.md section 3.1. Raises no fault.
+   !> Warns of each once a run, on standard error, also where the run is quiet.
+   subroutine step(self, model, run, done, fault)
+      class(pressure_alarm_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+
+      associate (stage => model%stages(done%stage), never => fault)
+         call warn_of_oscillation(model, stage, run%next, self%lines, self%told_oscillation)
+         call warn_lost_pressure(model, run%next, self%told_pressure)
+         call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, self%told_inflow)
+         call warn_of_dry_ground(model, stage, run%next, self%told_dry)
+      end associate
+   end subroutine step
+
+   !> Warns of pressures that alternate; not in static stages, nor of linear pressures. docs/theory/host.md section 3.1.
    subroutine warn_of_oscillation(model, stage, state, lines, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -41,7 +68,7 @@ contains
       integer :: node, e
 
       ! Linear pressures are those of the corners alone.
-      if (told .or. stage%kind == STATIC .or. model%domain%n_p < 6) return
+      if (told .or. .not. has_rates(stage%kind) .or. model%domain%n_p < 6) return
       associate (mesh => model%domain%mesh)
          ! Pressures that are no unknowns of the ground do not count.
          counts = .false.
@@ -61,8 +88,7 @@ contains
       end associate
    end subroutine warn_of_oscillation
 
-   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/memory-rules.md
-   !> section 2.2. Raises no fault.
+   !> Warns of a material that has lost its mean effective stress. docs/theory/memory-rules.md section 2.2.
    subroutine warn_lost_pressure(model, state, told)
       type(model_t), intent(in) :: model
       type(state_t), intent(in) :: state
@@ -87,8 +113,7 @@ contains
       end do
    end subroutine warn_lost_pressure
 
-   !> After an accepted step; once a run, on standard error, also where the run is quiet. docs/theory/host.md
-   !> section 7.7. Raises no fault.
+   !> Warns of a node of a seepage face that lets water in. docs/theory/host.md section 7.7.
    subroutine warn_of_inflow(model, stage, time, drinks, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -105,6 +130,27 @@ contains
             'refine the mesh there.')
       end associate
    end subroutine warn_of_inflow
+
+   !> Warns of pore water under more tension than any soil holds: more is drawn than the ground has, or lets through,
+   !> and water that expands makes up for it. docs/theory/host.md section 9.2.
+   subroutine warn_of_dry_ground(model, stage, state, told)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      type(state_t), intent(in) :: state
+      logical, intent(inout) :: told
+      integer :: node
+
+      if (told .or. .not. model%domain%with_w) return
+      node = minloc(state%x(AT_P_W, :size(model%domain%mesh%x, 2)), dim=1)
+      if (state%x(AT_P_W, node) > -OVEN_DRY) return
+      told = .true.
+      associate (x => model%domain%mesh%x(:, node))
+         call print_warning('stage '//trim(stage%name)//', time '//short(state%time)//' s: the pore water at ('// &
+            short(x(1))//', '//short(x(2))//') m is under a tension of '//short(-state%x(AT_P_W, node))//' kPa. '// &
+            'Soil is oven-dry at '//short(OVEN_DRY)//' kPa: more is drawn than the ground holds or lets through, '// &
+            'and the rest comes out of water that expands. Let a &fix of p_w, or a &history, limit what is drawn.')
+      end associate
+   end subroutine warn_of_dry_ground
 
    !> The lines of a mesh: at every corner the pairs of sides that go on from each other.
    pure function find_lines(x, t6) result(lines)

@@ -1,14 +1,16 @@
 ! SPDX-License-Identifier: MIT
-!> How large a run is: unknowns of every field, and the memory of its largest lists.
-module run_size
+!> What a run costs: unknowns of every field, the memory of its largest lists, and the time of its parts.
+module run_cost
+   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
+   use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use model_types, only: model_t
    use run_state, only: run_t
    use texts, only: short, whole
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: size_of_run
+   public :: size_of_run, print_cost
 
    real(wp), parameter :: MEGABYTE = 1.0e6_wp, OF_A_NUMBER = 8.0_wp   !< [bytes]
 contains
@@ -47,4 +49,30 @@ contains
 
       text = short(numbers*OF_A_NUMBER/MEGABYTE)//' MB'
    end function megabytes
-end module run_size
+
+   !> Prints counters, memory and the time of every part of a run.
+   subroutine print_cost(unit, model, run, total)
+      integer, intent(in) :: unit   !< Number of a Fortran unit.
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: total   !< Wall time since the program began [s].
+      character(14), parameter :: PHASES(8) = [character(14) :: 'material', 'assembly', 'contact', 'factorisation', &
+                                               'solution', 'rest of Newton', 'output', 'all else']
+      real(wp) :: seconds(8)
+      integer :: k
+
+      seconds(:7) = [run%system%seconds([T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST]), &
+                     run%seconds_output]
+      seconds(8) = total - sum(seconds(:7))
+      write (unit, '(a)') whole(run%steps)//' steps, '//whole(run%iterations)//' iterations, '// &
+         whole(run%cuts)//' cuts, '//whole(run%rate_evaluations)//' rate evaluations of the material; in this run '// &
+         whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
+         ' factorisations ('//whole(nint(run%system%sparse%entries, int64))//' entries), '// &
+         whole(run%system%sparse%n_solve)//' solutions by factors.'
+      write (unit, '(a)') size_of_run(model, run)
+      do k = 1, size(PHASES)
+         write (unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
+      end do
+      write (unit, '(3x,a,f12.3,a)') 'in all        ', total, ' s'
+   end subroutine print_cost
+end module run_cost

@@ -7,13 +7,14 @@ module energy_ledger
    use archive, only: archive_t
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
-   use dashpots, only: work_of_dashpots
+   use linear_forces, only: work_of_linear_forces
    use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, region_t, state_t, mixture_density, pressures_at, is_present, gravity_on, &
-                            COUPLED, OUTFLOWS
+   use porous_balance, only: DEVIATOR
+   use porous_domain, only: domain_t, region_t, state_t, strain_of, mixture_density, pressures_at, is_present, &
+                            gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
-   use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t
    implicit none (type, external)
    private
    public :: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, &
@@ -25,14 +26,14 @@ module energy_ledger
 
    type :: ledger_t
       real(wp) :: kinetic = 0.0_wp, kinetic_0 = 0.0_wp   !< Now, and at the start [kJ].
-      real(wp) :: skeleton = 0.0_wp   !< Work done on the skeleton: stored and dissipated [kJ].
+      real(wp) :: skeleton = 0.0_wp   !< Work done on the skeleton and on springs: stored and dissipated [kJ].
       real(wp) :: pores = 0.0_wp      !< Work of pore pressures against the change of volume [kJ].
       real(wp) :: gravity = 0.0_wp    !< Work of weight [kJ].
       real(wp) :: loads = 0.0_wp, supports = 0.0_wp      !< Work of loads and of prescribed displacements [kJ].
       real(wp) :: contact = 0.0_wp    !< Work done on contacts: on their penalty, and by friction [kJ].
-      real(wp) :: friction = 0.0_wp   !< Of it, dissipated by sliding [kJ].
+      real(wp) :: dissipated = 0.0_wp   !< Work that terms dissipated, as sliding does [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
-      real(wp) :: damping = 0.0_wp    !< Dissipated by the damping of regions [kJ].
+      real(wp) :: damping = 0.0_wp    !< Dissipated by damping and viscosity of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures, less rain: both, air [m3].
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
       real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
@@ -78,14 +79,16 @@ contains
             call add_work_of_element(domain, e, scheme, old, new, damping_stress, change(:, node), work)
             ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, damping_stress, &
                                                                      held(:, node))
-            if (.not. domain%with_w .or. scheme%kind == STATIC) cycle
+            if (.not. domain%with_w .or. .not. scheme%has_rates) cycle
             if (domain%regions(domain%region_of(e))%drainage == COUPLED) &
                call book_seepage(domain, e, scheme, old, new, ledger)
          end associate
       end do
-      if (allocated(constraint%dashpots)) then
-         work%damping = work%damping + work_of_dashpots(constraint%dashpots, dofs, old, new, change)
-         ledger%supports = ledger%supports + work_of_dashpots(constraint%dashpots, dofs, old, new, held)
+      if (allocated(constraint%linear)) then
+         work%damping = work%damping + work_of_linear_forces(constraint%linear, .true., dofs, old, new, change)
+         work%skeleton = work%skeleton + work_of_linear_forces(constraint%linear, .false., dofs, old, new, change)
+         ledger%supports = ledger%supports + work_of_linear_forces(constraint%linear, .true., dofs, old, new, held) &
+                           + work_of_linear_forces(constraint%linear, .false., dofs, old, new, held)
       end if
       ledger%skeleton = ledger%skeleton + work%skeleton
       ledger%pores = ledger%pores + work%pores
@@ -117,7 +120,7 @@ contains
       real(wp), intent(inout) :: damping_stress(:, :)
       integer :: e, p
 
-      if (scheme%kind /= DYNAMIC) then
+      if (.not. scheme%has_inertia) then
          damping_stress = 0.0_wp
          return
       end if
@@ -171,7 +174,7 @@ contains
             ledger%contact = ledger%contact + touch*change(f, k)
             if (.not. constraint%fixed(i)) cycle
             ledger%supports = ledger%supports + (touch - load)*change(f, k)
-            if (scheme%kind == DYNAMIC) ledger%supports = ledger%supports &
+            if (scheme%has_inertia) ledger%supports = ledger%supports &
                + constraint%mass(i)*(new%v(f, k) - old%v(f, k))/scheme%dt*change(f, k)
          end associate
       end do
@@ -192,7 +195,7 @@ contains
       integer :: i
 
       after = 0.0_wp
-      if (scheme%kind == STATIC) return
+      if (.not. scheme%has_rates) return
       flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
       do i = 1, dofs%n
          if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
@@ -232,21 +235,20 @@ contains
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
       real(wp) :: damping(4), strain(4), p(2), middle(2, 6), s, n, rho, gravity, push(DISPLACEMENTS)
-      real(wp) :: dv(DISPLACEMENTS, 6)
+      real(wp) :: dv(DISPLACEMENTS, 6), v(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
       gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
       node = domain%mesh%t6(:, e)
       dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
+      v = (new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node))/scheme%dt
       associate (carriers => domain%carriers(:domain%n_carriers(e), e))
          middle(:, :size(carriers)) = 0.5_wp*(old%x(AT_P_W:, carriers) + new%x(AT_P_W:, carriers))
       end associate
       do g = 1, domain%rule
          at = (e - 1)*domain%rule + g
          associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
-            strain = [dot_product(gp%dn(:, 1), du(1, :)), dot_product(gp%dn(:, 2), du(2, :)), &
-                      dot_product(gp%n_over_r, du(1, :)), &
-                      dot_product(gp%dn(:, 2), du(1, :)) + dot_product(gp%dn(:, 1), du(2, :))]
+            strain = strain_of(gp, du)
             work%skeleton = work%skeleton &
                + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
             s = 0.5_wp*(old%s(at) + new%s(at))
@@ -255,7 +257,9 @@ contains
             work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
             rho = mixture_density(domain, region, n, s)
             work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
-            if (scheme%kind /= DYNAMIC) cycle
+            if (region%viscosity > 0.0_wp .and. scheme%has_rates) work%damping = work%damping &
+               + gp%weight*region%viscosity*dot_product(matmul(DEVIATOR, strain_of(gp, v)), strain)
+            if (.not. scheme%has_inertia) cycle
             push = gp%weight*rho*matmul(du, gp%n)
             work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt
             if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
@@ -351,7 +355,7 @@ contains
       else
          ledger%tolerated = max(ledger%tolerated, tolerance*work)
       end if
-      if (scheme%kind == DYNAMIC) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
+      if (scheme%has_inertia) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 
    !> After book_creation: counts the steps in a row in which more energy is created than a stage allows. The first step
@@ -396,7 +400,7 @@ contains
       call archive%exchange('loads', ledger%loads, 'kJ', 'work of loads')
       call archive%exchange('supports', ledger%supports, 'kJ', 'work of prescribed displacements')
       call archive%exchange('contact', ledger%contact, 'kJ', 'work done on contacts')
-      call archive%exchange('friction', ledger%friction, 'kJ', 'energy dissipated by sliding')
+      call archive%exchange('dissipated', ledger%dissipated, 'kJ', 'energy that terms dissipated, as by sliding')
       call archive%exchange('seepage', ledger%seepage, 'kJ', 'energy dissipated by seepage')
       call archive%exchange('damping', ledger%damping, 'kJ', 'energy dissipated by damping')
       call archive%exchange('outflow', ledger%outflow, 'm3', 'outflow of both fluids, less rain')

@@ -1,0 +1,44 @@
+! SPDX-License-Identifier: MIT
+!> Warnings of steps that Newton's method accepts in another way than the scene says: loads that act at once and are
+!> applied evenly, and an error that stays above the tolerance.
+module convergence_alarm
+   use faults, only: fault_t
+   use model_types, only: model_t
+   use run_observer, only: observer_t, accepted_step_t
+   use run_state, only: run_t
+   use texts, only: short
+   use warnings, only: print_warning
+   implicit none (type, external)
+   private
+   public :: convergence_alarm_t
+
+   type, extends(observer_t) :: convergence_alarm_t
+      integer :: told = 0   !< Stage whose stagnation has been told.
+   contains
+      procedure :: step
+   end type convergence_alarm_t
+contains
+   !> Tells of both once a stage, on standard error, also where the run is quiet. docs/theory/host.md sections 4.4 and
+   !> 5.1.
+   subroutine step(self, model, run, done, fault)
+      class(convergence_alarm_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+
+      associate (stage => model%stages(done%stage), never => fault)
+         if (run%at%step == 1 .and. allocated(run%at%sudden)) &
+            call print_warning('stage '//trim(stage%name)//': its loads act at once and the '// &
+               'first step did not converge: they are applied evenly over the stage. A material with a '// &
+               'memory may answer otherwise than at once; give the loads a &history to say how they grow.')
+         if (self%told == done%stage .or. .not. done%log%stagnated) return
+         self%told = done%stage
+         call print_warning('stage '//trim(stage%name)//', time '//short(run%next%time)// &
+            ' s: Newton''s method stays at an error of '//short(maxval(done%log%error))//' and cannot reach its '// &
+            'tolerance of '//short(done%control%tolerance)//', because stresses are integrated to '// &
+            short(done%control%roughness)//'. The step is accepted. Give &stage a tolerance above the error '// &
+            'reached, or the material a smaller one.')
+      end associate
+   end subroutine step
+end module convergence_alarm

@@ -1,0 +1,206 @@
+! SPDX-License-Identifier: MIT
+!> Observer that keeps the ledger of a run: it books every accepted step, writes ledger.csv, and ends a run that has
+!> created energy, whose results may be wrong by any factor although every step has converged. docs/theory/host.md
+!> section 9.
+module ledger_observer
+   use archive, only: archive_t
+   use contact_interfaces, only: mean_contact_forces
+   use csv, only: csv_t, check_csv, write_row, hand_over, close_csv, is_open
+   use effect_indicators, only: indicators_of, indicator_columns
+   use energy_ledger, only: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, &
+                            kinetic_energy, imbalance, ALARMING_SHARE
+   use exit_codes, only: EXIT_ENERGY
+   use faults, only: fault_t, raise
+   use generalised_alpha, only: has_inertia
+   use kinds, only: wp
+   use linear_system, only: T_CONTACT
+   use model_types, only: model_t
+   use run_observer, only: observer_t, accepted_step_t, slot_t
+   use run_state, only: run_t
+   use springs, only: mean_forces_of_springs
+   use run_tables, only: open_table, exchange_table
+   use texts, only: short
+   use wall_clock, only: clock, add_elapsed
+   use warnings, only: print_warning
+   implicit none (type, external)
+   private
+   public :: ledger_observer_t
+
+   character(*), parameter :: COLUMNS = 'time,dt,stage,iterations,'// &
+      'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
+      'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,friction,imbalance,'// &
+      'outflow,outflow_air,localised,step_error,'
+   character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
+      'measure = ''change'' where weight rests'
+   !> Steps in which the work of a load that has just begun exceeds by far that of its first step: it grows with the
+   !> third power of their number and faster.
+   real(wp), parameter :: PATIENCE = 5.0_wp
+
+   type, extends(observer_t) :: ledger_observer_t
+      type(csv_t) :: table
+      type(ledger_t) :: ledger
+      !> (4, points) Stress of the damping in proportion to the stiffness; allocated where a region has it [kPa].
+      real(wp), allocatable :: damping_stress(:, :)
+      real(wp), allocatable :: indicators(:)   !< Of the last step.
+   contains
+      procedure :: exchange
+      procedure :: fits
+      procedure :: begins
+      procedure :: step
+      procedure :: taken_over
+      procedure :: stage_ends
+      procedure :: ends
+   end type ledger_observer_t
+contains
+   !> Exchanges ledger, stress of the damping and the length of the table.
+   subroutine exchange(self, archive)
+      class(ledger_observer_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call exchange_ledger(self%ledger, archive)
+      call archive%exchange_allocatable('damping_stress', self%damping_stress, 'kPa', &
+                                        'stress of the damping in proportion to the stiffness')
+      call exchange_table('ledger', self%table, archive)
+   end subroutine exchange
+
+   !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: ledger.csv is missing or too short.
+   subroutine fits(self, model, run, fault)
+      class(ledger_observer_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => model, neither => run)
+      end associate
+      if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
+   end subroutine fits
+
+   !> Opens ledger.csv. Fault EXIT_OUTPUT: it cannot be written.
+   subroutine begins(self, model, run, fault)
+      class(ledger_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      if (run%steps == 0 .and. any(model%domain%regions%stiffness_damping > 0.0_wp)) &
+         allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
+      if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS//indicator_columns(model), &
+                                                  run%steps > 0, self%table, fault)
+   end subroutine begins
+
+   !> Books a step: energies, work, outflow, contacts; and ends a run that creates energy: in PATIENCE steps in a row
+   !> more than the stage may, or in its last one. docs/theory/host.md section 9. Fault EXIT_ENERGY.
+   subroutine step(self, model, run, done, fault)
+      class(ledger_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+      real(wp), allocatable :: contact_force(:)
+      real(wp) :: t0
+
+      associate (ledger => self%ledger, stage => model%stages(done%stage))
+         if (run%at%step == 1) then
+            ledger%kinetic_0 = ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
+                                                                 run%state) - ledger%kinetic
+            ! The velocities of a stage without inertia are no motion: each stage begins its own account.
+            if (run%steps > 1) ledger%open_0 = imbalance(ledger)
+         end if
+         t0 = clock()
+         allocate (contact_force(0))
+         if (allocated(run%system%contacts%interfaces)) then
+            contact_force = mean_contact_forces(run%system%contacts, model%dofs, run%state%x, run%next%x)
+            call add_elapsed(run%system%seconds(T_CONTACT), t0)
+         end if
+         if (allocated(run%constraint%springs)) call mean_forces_of_springs(run%constraint%springs, model%dofs, &
+                                                             done%scheme, run%state, run%next, contact_force)
+         call book_step(model%domain, model%dofs, done%scheme, run%constraint, run%system%reaction, contact_force, &
+                        run%state, run%next, self%damping_stress, ledger)
+         call book_creation(done%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &
+                            ledger)
+         if (has_inertia(stage%kind)) call count_creation(stage%created_energy, ledger)
+         self%indicators = indicators_of(model, done%stage, done%scheme%dt, run%constraint%mass, run%state, run%next)
+         done%contact_work = ledger%contact
+         if (.not. has_inertia(stage%kind)) return
+         if (ledger%overdue < merge(1.0_wp, PATIENCE, done%last)) return
+         call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(run%next%time)// &
+                    ' s: the run has created '//amount(ledger)//', allowed '//short(100*stage%created_energy)// &
+                    ' %. Its results may be wrong by any factor: '//REMEDY//'; created_energy of &stage allows more.')
+      end associate
+   end subroutine step
+
+   !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
+   !> written.
+   subroutine taken_over(self, model, run, done, earlier, fault)
+      class(ledger_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(in) :: done
+      type(slot_t), intent(inout) :: earlier(:)
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => model, neither => earlier)
+      end associate
+      self%ledger%dissipated = self%ledger%dissipated + run%dissipated
+      if (is_open(self%table)) call write_ledger(self%table, run%state%time, done, self%indicators, self%ledger, fault)
+   end subroutine taken_over
+
+   subroutine write_ledger(table, time, done, indicators, ledger, fault)
+      type(csv_t), intent(inout) :: table
+      real(wp), intent(in) :: time, indicators(:)
+      type(accepted_step_t), intent(in) :: done
+      type(ledger_t), intent(in) :: ledger
+      type(fault_t), intent(inout) :: fault
+
+      associate (log => done%log)
+         write (table%row, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))') time, done%scheme%dt, &
+            done%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
+            real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
+            ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%dissipated, imbalance(ledger), &
+            ledger%outflow, ledger%outflow_air, done%localised, done%error, indicators
+      end associate
+      call write_row(table, fault)
+      call hand_over(table, fault)
+   end subroutine write_ledger
+
+   !> Warns at the end of a dynamic stage that has created much, on standard error, also where the run is quiet. From
+   !> ALARMING_SHARE of the largest work on; nothing beyond what has ended the run.
+   subroutine stage_ends(self, model, run, complete, fault)
+      class(ledger_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => complete, never => fault)
+      end associate
+      associate (stage => model%stages(run%at%stage), ledger => self%ledger)
+         if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
+         if (.not. has_inertia(stage%kind) .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
+         if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
+         call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &
+            '. Do not use its results: '//REMEDY//'.')
+      end associate
+   end subroutine stage_ends
+
+   !> Closes ledger.csv. Fault EXIT_OUTPUT: a disk is full.
+   subroutine ends(self, model, run, fault)
+      class(ledger_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => model, neither => run)
+      end associate
+      call close_csv(self%table, fault)
+   end subroutine ends
+
+   !> Energy in kJ and as a share.
+   function amount(ledger) result(text)
+      type(ledger_t), intent(in) :: ledger
+      character(:), allocatable :: text
+
+      text = short(ledger%most_created)//' kJ of energy, '//short(100*ledger%most_created/max(ledger%largest_work, &
+             tiny(1.0_wp)))//' % of the largest work (column imbalance of ledger.csv)'
+   end function amount
+end module ledger_observer

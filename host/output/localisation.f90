@@ -1,0 +1,176 @@
+! SPDX-License-Identifier: MIT
+!> Observer of shear work that is done where the tangent of the skeleton has lost ellipticity: its share tells a run
+!> whose displacements depend on the cells. It is booked from the slopes that the last pass of a step has kept; nothing
+!> is asked of the material. docs/theory/host.md section 16.1.
+module localisation
+   use acoustic_tensor, only: determinant_of, least_determinant, loses_ellipticity
+   use archive, only: archive_t
+   use carried_slopes, only: slopes_t
+   use faults, only: fault_t
+   use kinds, only: wp, PI
+   use model_types, only: model_t
+   use porous_domain, only: domain_t, state_t, is_present, strain_of
+   use run_observer, only: observer_t, accepted_step_t
+   use run_state, only: run_t
+   use texts, only: short, whole
+   use unknown_fields, only: DISPLACEMENTS
+   use warnings, only: print_warning
+   implicit none (type, external)
+   private
+   public :: localisation_observer_t
+
+   !> Share of the shear work that is told: docs/theory/host.md section 16.1 says what it rests on.
+   real(wp), parameter :: TOLD_SHARE = 0.05_wp
+   integer, parameter :: WORTH_THREADS = 64   !< Elements, as in equation_assembly.
+
+   !> Works since displacements began to count.
+   type, extends(observer_t) :: localisation_observer_t
+      real(wp) :: shear = 0.0_wp          !< Positive work of the points on deviators [kJ].
+      real(wp) :: localised = 0.0_wp      !< Of it, by points whose tangent had lost ellipticity [kJ].
+      real(wp), allocatable :: work(:)    !< (points) The same of every point [kJ].
+      real(wp) :: since = 0.0_wp          !< When the share first was above TOLD_SHARE [s].
+      logical :: is_above = .false.       !< It has been.
+      real(wp) :: normal = 0.0_wp         !< Of the band at the point with the most of that work, from r towards z.
+      logical :: told = .false.
+   contains
+      procedure :: exchange
+      procedure :: begins
+      procedure :: step
+      procedure :: stage_ends
+   end type localisation_observer_t
+contains
+   !> Exchanges what is booked; a run that is taken up tells it again.
+   subroutine exchange(self, archive)
+      class(localisation_observer_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter('localisation')
+      call archive%exchange('shear', self%shear, 'kJ', 'shear work')
+      call archive%exchange('localised', self%localised, 'kJ', 'shear work done without ellipticity')
+      call archive%exchange_allocatable('work', self%work, 'kJ', 'shear work that a point has done without ellipticity')
+      call archive%exchange('is_above', self%is_above, 'whether the share has been above what is told')
+      call archive%exchange('since', self%since, 's', 'when it first was')
+      call archive%exchange('normal', self%normal, 'rad', 'normal of the band, from r towards z')
+      call archive%leave('localisation')
+   end subroutine exchange
+
+   !> Makes room for the points.
+   subroutine begins(self, model, run, fault)
+      class(localisation_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => model, never => fault)
+      end associate
+      if (run%steps == 0) allocate (self%work(size(run%state%e)), source=0.0_wp)
+   end subroutine begins
+
+   !> Books a step, gives its share to the ledger, and tells a share above TOLD_SHARE, once, on standard error. Points
+   !> are looked at in parallel, and added up in their order.
+   subroutine step(self, model, run, done, fault)
+      class(localisation_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+      real(wp), allocatable :: work(:)
+      logical, allocatable :: lost(:)
+      real(wp) :: least
+      integer :: e, p, worst
+
+      associate (unused => fault)
+      end associate
+      allocate (work(size(self%work)), lost(size(self%work)))
+      associate (m => model%domain)
+         !$omp parallel do num_threads(merge(m%threads, 1, size(m%region_of) >= WORTH_THREADS)) schedule(static) &
+         !$omp default(shared) private(e)
+         do e = 1, size(m%region_of)
+            call look_at_element(m, e, run%assembly%slopes, run%state, run%next, &
+                                 work((e - 1)*m%rule + 1:e*m%rule), lost((e - 1)*m%rule + 1:e*m%rule))
+         end do
+         !$omp end parallel do
+      end associate
+      do p = 1, size(work)
+         self%shear = self%shear + work(p)
+         if (.not. lost(p)) cycle
+         self%localised = self%localised + work(p)
+         self%work(p) = self%work(p) + work(p)
+      end do
+      worst = maxloc(self%work, dim=1)
+      if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
+                                              self%normal)
+      done%localised = self%localised/max(self%shear, tiny(1.0_wp))
+      if (done%localised > TOLD_SHARE .and. .not. self%is_above) then
+         self%is_above = .true.
+         self%since = run%next%time
+      end if
+      if (self%told .or. .not. self%is_above) return
+      self%told = .true.
+      call tell(self, model%domain, model%stages(done%stage)%name, run%next%time, done%localised, worst)
+   end subroutine step
+
+   !> The points of an element: shear work of the step, where positive, and whether the tangent has lost ellipticity.
+   pure subroutine look_at_element(domain, e, slopes, old, new, work, lost)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: e
+      type(slopes_t), intent(in) :: slopes
+      type(state_t), intent(in) :: old, new
+      real(wp), intent(out) :: work(:)   !< [kJ]
+      logical, intent(out) :: lost(:)
+      real(wp) :: du(DISPLACEMENTS, 6), strain(4), stress(4)
+      integer :: g, p
+
+      work = 0.0_wp
+      lost = .false.
+      if (.not. is_present(new, e)) return
+      associate (node => domain%mesh%t6(:, e))
+         du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
+      end associate
+      do g = 1, domain%rule
+         p = (e - 1)*domain%rule + g
+         strain = strain_of(domain%gauss(g, e), du)
+         stress = 0.5_wp*(old%stress(:4, p) + new%stress(:4, p))
+         stress(:3) = stress(:3) - sum(stress(:3))/3
+         work(g) = max(0.0_wp, domain%gauss(g, e)%weight*dot_product(stress, strain))
+         if (domain%regions(domain%region_of(e))%law%has_energy .or. .not. work(g) > 0.0_wp) cycle
+         lost(g) = loses_ellipticity(determinant_of(slopes%strain(:, :, p)))
+      end do
+   end subroutine look_at_element
+
+   !> Prints the sentence; the end of the run repeats it.
+   subroutine tell(self, domain, stage, time, share, worst)
+      type(localisation_observer_t), intent(in) :: self
+      type(domain_t), intent(in) :: domain
+      character(*), intent(in) :: stage   !< Its name.
+      real(wp), intent(in) :: time, share   !< [s], [-]
+      integer, intent(in) :: worst   !< Point with the most work.
+
+      associate (x => domain%gauss(mod(worst - 1, domain%rule) + 1, (worst - 1)/domain%rule + 1)%x)
+         call print_warning('stage '//trim(stage)//', time '//short(time)//' s: shear localises. '// &
+            short(0.1_wp*nint(1000*share))//' % of the shear work so far is done where the tangent of the soil has '// &
+            'lost ellipticity (column localised of ledger.csv; above '//short(100*TOLD_SHARE)//' % since '// &
+            short(self%since)//' s), most of it at ('//short(x(1))//', '//short(x(2))//') m in a band with its '// &
+            'normal at '//whole(nint(self%normal*180/PI))//' degrees from r towards z. Displacements depend on the '// &
+            'cell there and have no limit: state the cell with them, or give the &region a viscosity.')
+      end associate
+   end subroutine tell
+
+   !> Forgets all where displacements begin to count anew.
+   subroutine stage_ends(self, model, run, complete, fault)
+      class(localisation_observer_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+
+      associate (unused => fault)
+      end associate
+      if (.not. (complete .and. model%stages(run%at%stage)%zero_displacements)) return
+      self%shear = 0.0_wp
+      self%localised = 0.0_wp
+      self%work = 0.0_wp
+      self%is_above = .false.
+      self%told = .false.
+   end subroutine stage_ends
+end module localisation

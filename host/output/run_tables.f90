@@ -1,0 +1,38 @@
+! SPDX-License-Identifier: MIT
+!> Tables of a run that a restart goes on with, row by row.
+module run_tables
+   use archive, only: archive_t
+   use csv, only: csv_t, new_csv, resume_csv, flush_csv, is_open
+   use faults, only: fault_t
+   implicit none (type, external)
+   private
+   public :: open_table, exchange_table
+contains
+   !> A new table; or, after a restart, the one of the run as it was at its checkpoint. Fault EXIT_OUTPUT: it cannot be
+   !> written.
+   subroutine open_table(path, head, resume, table, fault)
+      character(*), intent(in) :: path, head
+      logical, intent(in) :: resume
+      type(csv_t), intent(inout) :: table
+      type(fault_t), intent(inout) :: fault
+
+      if (fault%code /= 0) return
+      if (resume) then
+         call resume_csv(path, head, table, fault)
+      else
+         call new_csv(path, head, table, fault)
+      end if
+   end subroutine open_table
+
+   !> Exchanges the length of a table with a checkpoint, which counts on what it has brought to the disk.
+   subroutine exchange_table(name, table, archive)
+      character(*), intent(in) :: name
+      type(csv_t), intent(inout) :: table
+      type(archive_t), intent(inout) :: archive
+      type(fault_t) :: fault
+
+      if (.not. archive%reading .and. is_open(table)) call flush_csv(table, fault)
+      if (fault%code /= 0) call archive%refuse()
+      call archive%exchange(name//'_bytes', table%bytes, '-', 'bytes of the table '//name)
+   end subroutine exchange_table
+end module run_tables

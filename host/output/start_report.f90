@@ -1,0 +1,80 @@
+! SPDX-License-Identifier: MIT
+!> What is said of a run before it begins: its size and stages, how far its start is from balance, what of the scene may
+!> not be meant, and where a checkpoint would take it up.
+module start_report
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use contact_alarm, only: contact_alarm_t
+   use contact_setup, only: contacts_act
+   use generalised_alpha, only: has_rates, has_inertia
+   use initial_conditions, only: balance_t
+   use model_types, only: model_t
+   use run_cost, only: size_of_run
+   use run_state, only: run_t
+   use scene_types, only: scene_t
+   use scene_warnings, only: list_warnings
+   use start_balance, only: find_imbalance
+   use texts, only: short, whole
+   use warnings, only: print_warning, WARNING_LENGTH
+   implicit none (type, external)
+   private
+   public :: report_start, report_restart
+contains
+   !> Says what is going to run, and warns of the scene, which a quiet run does as well. `only_check`: nothing runs, and
+   !> the overlaps that a run tells where its first stage begins are told here.
+   subroutine report_start(scene, model, run, quiet, verbose, only_check)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run   !< Its contacts are probed.
+      logical, intent(in) :: quiet, verbose, only_check
+      character(WARNING_LENGTH), allocatable :: doubts(:)
+      type(balance_t) :: balance
+      type(contact_alarm_t) :: contacts
+      integer :: i
+
+      if (.not. quiet) call announce(model, run, verbose)
+      call find_imbalance(model, run, balance)
+      if (.not. quiet .and. balance%known) write (output_unit, '(a)') 'Start: at most '//short(balance%stress)// &
+         ' kPa without balance, at ('//short(balance%x(1))//', '//short(balance%x(2))//') m; the stress there is '// &
+         short(balance%there)//' kPa.'
+      call list_warnings(scene, model, run%tension, balance, doubts)
+      do i = 1, size(doubts)
+         call print_warning(doubts(i))
+      end do
+      if (.not. only_check) return
+      call contacts_act(model, model%stages(1), run%system%contacts)
+      call contacts%stage_begins(model, run, 1)
+   end subroutine report_start
+
+   !> Says what is going to run.
+   subroutine announce(model, run, verbose)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: verbose   !< With its memory.
+      integer :: i
+
+      write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
+         whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
+         whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
+      if (verbose) write (output_unit, '(a)') size_of_run(model, run)
+      do i = 1, size(model%stages)
+         associate (stage => model%stages(i))
+            if (has_rates(stage%kind)) write (output_unit, '(a)') 'Stage '//trim(stage%name)//': '// &
+               trim(merge('dynamic     ', 'quasi_static', has_inertia(stage%kind)))//', rho_inf '// &
+               short(stage%rho_inf)//'.'
+            if (stage%controlled) write (output_unit, '(a)') 'Stage '//trim(stage%name)// &
+               ': steps are controlled, tolerance '//short(stage%step_tolerance)//'.'
+         end associate
+      end do
+   end subroutine announce
+
+   !> Says where a run would go on that a checkpoint has put in place.
+   subroutine report_restart(model, run, restart, folder)
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      character(*), intent(in) :: restart, folder   !< Path of the checkpoint; folder of the results.
+
+      write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
+         ', step '//whole(run%at%step)//', time '//short(run%state%time)// &
+         ' s; the run would go on in '//folder//'.'
+   end subroutine report_restart
+end module start_report

@@ -1,0 +1,181 @@
+! SPDX-License-Identifier: MIT
+!> Observer that compares the water that is stored in the pores with what goes through the boundaries. What a stage has
+!> lost or made is told at its end, whatever the cause: neither the residuals of Newton's method nor the rates of the
+!> scheme count here. docs/theory/host.md section 9.2.
+module water_balance
+   use archive, only: archive_t
+   use linear_forces, only: water_through_dashpots
+   use degrees_of_freedom, only: dofs_t
+   use faults, only: fault_t
+   use generalised_alpha, only: scheme_t
+   use kinds, only: wp
+   use model_types, only: model_t
+   use porous_domain, only: domain_t, state_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
+   use prescribed_values, only: constraint_t
+   use run_observer, only: observer_t, accepted_step_t
+   use run_state, only: run_t
+   use texts, only: short
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
+   use warnings, only: print_warning
+   implicit none (type, external)
+   private
+   public :: water_alarm_t
+
+   real(wp), parameter :: ALARMING_SHARE = 0.02_wp   !< Share of the water that has come and gone from which it is told.
+   !> Share of the water that has moved in the pores below which a difference is what Newton's tolerance may leave.
+   real(wp), parameter :: INSIDE_SHARE = 0.002_wp
+   real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Share of the water of a point: where all is at rest nothing moves.
+
+   !> Sums of the stage under way.
+   type :: water_t
+      real(wp) :: gained = 0.0_wp     !< Water that the pores took up by their volume, saturation and pressure [m3].
+      real(wp) :: turned = 0.0_wp     !< The same with all parts by magnitude [m3].
+      real(wp) :: received = 0.0_wp   !< Water through loads, less what dashpots let out [m3].
+      real(wp) :: left = 0.0_wp       !< Water through prescribed pressures, less the rain [m3].
+      real(wp) :: moved = 0.0_wp      !< Water through boundaries, in and out [m3].
+   end type water_t
+
+   !> It stands behind the ledger, which sets the flows out.
+   type, extends(observer_t) :: water_alarm_t
+      type(water_t) :: water
+   contains
+      procedure :: exchange
+      procedure :: step
+      procedure :: stage_ends
+   end type water_alarm_t
+contains
+   !> Exchanges the water of the stage so far.
+   subroutine exchange(self, archive)
+      class(water_alarm_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      associate (w => self%water)
+         call archive%exchange('water_gained', w%gained, 'm3', 'water that the pores took up in the stage')
+         call archive%exchange('water_turned', w%turned, 'm3', 'the same with all parts by magnitude')
+         call archive%exchange('water_received', w%received, 'm3', 'water through loads in the stage')
+         call archive%exchange('water_left', w%left, 'm3', 'water through prescribed pressures in the stage')
+         call archive%exchange('water_moved', w%moved, 'm3', 'water through boundaries in the stage')
+      end associate
+   end subroutine exchange
+
+   !> Books the water of a step.
+   subroutine step(self, model, run, done, fault)
+      class(water_alarm_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(inout) :: run
+      type(accepted_step_t), intent(inout) :: done
+      type(fault_t), intent(inout) :: fault
+      integer :: e
+
+      associate (never => fault)
+      end associate
+      if (.not. done%scheme%has_rates .or. .not. model%domain%with_w) return
+      call book_boundaries(model%dofs, done%scheme, run%constraint, run%system%reaction, run%state, run%next, &
+                           self%water)
+      do e = 1, size(model%domain%region_of)
+         if (is_present(run%state, e) .and. any(model%domain%regions(model%domain%region_of(e))%drainage == &
+                                                [COUPLED, UNDRAINED])) &
+            call book_storage(model%domain, e, run%state, run%next, self%water)
+      end do
+   end subroutine step
+
+   !> Warns at the end of a stage of the water that is missing or made; not where the scene leaves a part of the rate of
+   !> saturation out.
+   subroutine stage_ends(self, model, run, complete, fault)
+      class(water_alarm_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(run_t), intent(in) :: run
+      logical, intent(in) :: complete
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: of_what
+      real(wp) :: missing
+
+      associate (water => self%water, stage => model%stages(run%at%stage), unused => complete, never => fault)
+         missing = water%received - water%left - water%gained
+         if (model%domain%full_rate .and. &
+             abs(missing) > max(ALARMING_SHARE*water%moved, INSIDE_SHARE*water%turned)) then
+            of_what = short(100*abs(missing)/water%turned)//' % of what has moved in its pores'
+            if (water%moved > 0.0_wp) of_what = short(100*abs(missing)/water%moved)//' % of what has come and gone'
+            call print_warning('stage '//trim(stage%name)//': '//short(abs(missing))//' m3 of water are '// &
+               trim(merge('missing', 'made   ', missing > 0.0_wp))//' in the ground, '//of_what//'. Set a smaller '// &
+               'tolerance in &stage, now '//short(stage%tolerance)//', and shorter steps.')
+         end if
+      end associate
+      self%water = water_t()
+   end subroutine stage_ends
+
+   !> Adds what the pores of an element take up in a step: by their volume, their saturation and the pressure of the
+   !> water.
+   pure subroutine book_storage(domain, e, old, new, water)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: e
+      type(state_t), intent(in) :: old, new
+      type(water_t), intent(inout) :: water
+      real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), p(2), parts(3), n, s
+      integer :: g, at
+
+      associate (node => domain%mesh%t6(:, e), carriers => domain%carriers(:domain%n_carriers(e), e))
+         du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
+         rise(:, :size(carriers)) = new%x(AT_P_W:, carriers) - old%x(AT_P_W:, carriers)
+      end associate
+      do g = 1, domain%rule
+         at = (e - 1)*domain%rule + g
+         associate (gp => domain%gauss(g, e))
+            s = 0.5_wp*(old%s(at) + new%s(at))
+            n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
+            p = pressures_at(domain, e, g, rise)
+            parts(1) = s*(dot_product(gp%dn(:, 1), du(1, :)) + dot_product(gp%dn(:, 2), du(2, :)) &
+                          + dot_product(gp%n_over_r, du(1, :)))
+            parts(2) = n*(new%s(at) - old%s(at))
+            parts(3) = n*s*p(1)/domain%fluids%k_w
+            water%gained = water%gained + gp%weight*sum(parts)
+            water%turned = water%turned + gp%weight*(sum(abs(parts)) + ROUNDING*n*s)
+         end associate
+      end do
+   end subroutine book_storage
+
+   !> Adds what has come through loads and dashpots, what has left through prescribed pressures, and the
+   !> magnitude of all that. Rain counts as water that did not leave.
+   pure subroutine book_boundaries(dofs, scheme, constraint, reaction, old, new, water)
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      !> (unknowns) Residual with the constrained rows kept, of the sum of both fluids where air is an unknown and of
+      !> water where its pressure is prescribed [m3/s].
+      real(wp), intent(in) :: reaction(:)
+      type(state_t), intent(in) :: old, new
+      type(water_t), intent(inout) :: water
+      real(wp) :: inflow, outflow, mean(OUTFLOWS)
+      integer :: node, w, c
+
+      do node = 1, size(constraint%air)
+         w = dofs%of(AT_P_W, node)
+         if (w == 0) cycle
+         c = dofs%of(AT_P_C, node)
+         inflow = inflow_at(w)
+         outflow = 0.0_wp
+         if (constraint%fixed(w)) outflow = reaction(w)
+         if (c > 0) then
+            inflow = inflow - inflow_at(c)
+            ! Where suction is prescribed what leaves is known by the air that comes in its place.
+            if (constraint%fixed(c) .and. .not. constraint%air(node)) outflow = outflow - reaction(c)
+         end if
+         water%received = water%received + scheme%dt*inflow
+         water%moved = water%moved + scheme%dt*(abs(inflow) + abs(outflow))
+      end do
+      associate (before => old%s_rate(size(old%s) + 1:), after => new%s_rate(size(new%s) + 1:))
+         mean = before + scheme%gamma_1*(after - before)
+      end associate
+      water%left = water%left + scheme%dt*(mean(1) - mean(2))
+      if (allocated(constraint%linear)) water%received = water%received &
+         - water_through_dashpots(constraint%linear, dofs, constraint%air, new%x - old%x)
+   contains
+      !> Mean over the step [m3/s].
+      pure real(wp) function inflow_at(i)
+         integer, intent(in) :: i
+
+         inflow_at = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i) - constraint%rain_0(i) &
+                             - constraint%rain_1(i)) - constraint%offset(i)
+      end function inflow_at
+   end subroutine book_boundaries
+end module water_balance

@@ -1,0 +1,136 @@
+! SPDX-License-Identifier: MIT
+!> Drainage that follows a contact, the key drainage of &contact: while a node of the slave presses and at least half of
+!> it is covered, it is impervious, and the &fix of pressures along the slave do not act on it. This is decided at the
+!> start of a step from the displacements there, so that a step is smooth and a restart decides the same.
+!> docs/theory/contact.md section 5.
+module contact_drainage
+   use exit_codes, only: EXIT_CONVERGENCE
+   use kinds, only: wp
+   use key_table, only: key_table_t
+   use model_types, only: model_t, term_t
+   use namelists, only: group_t
+   use contact_types, only: contact_message
+   use contact_interfaces, only: start_points
+   use faults, only: fault_t, raise, EXIT_INPUT
+   use scene_types, only: groups_named, item_of, place_of
+   use solution, only: solution_t
+   use unknown_fields, only: DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: contact_drainage_t
+
+   character(*), parameter :: IN_GROUP = 'contact'
+
+   type, extends(term_t) :: contact_drainage_t
+      logical, allocatable :: follows(:)        !< (contacts) Whether its drainage follows its state.
+      logical, allocatable :: gives_way(:, :)   !< (fixes, contacts) A pressure prescribed along edges of the slave.
+   contains
+      procedure, nopass :: declare
+      procedure :: build, before_step
+   end type contact_drainage_t
+
+   real(wp), parameter :: HALF = 0.5_wp*(1 - 1.0e-9_wp)   !< Up to rounding: half an edge may lie exactly opposite.
+contains
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+      logical :: follows
+
+      follows = .false.
+      if (k%group%name == IN_GROUP) call take(k, follows)
+   end subroutine declare
+
+   subroutine take(k, follows)
+      type(key_table_t), intent(inout) :: k
+      logical, intent(inout) :: follows
+
+      call k%flag('drainage', follows, 'fixed|state', 'state', &
+                  'state: nodes in contact are released from &fix of pressures')
+   end subroutine take
+
+   !> Which &fix give way to which contacts: those that prescribe a pressure on all nodes of an edge of the slave. Fault
+   !> EXIT_INPUT: the scene has no pressures, or a contact whose drainage follows its state has no such &fix.
+   subroutine build(self, model, there, fault)
+      class(contact_drainage_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t) :: table
+      integer :: c, f
+
+      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      allocate (self%follows(size(model%contacts)), source=.false.)
+      allocate (self%gives_way(size(model%fixes), size(model%contacts)), source=.false.)
+      do c = 1, size(model%contacts)
+         table%group = groups(c)
+         call take(table, self%follows(c))
+         if (.not. self%follows(c)) cycle
+         if (.not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(item_of(groups(c)))// &
+            'drainage = ''state'' needs pressures; see fields in &scene.')
+         if (fault%code /= 0) return
+         do f = 1, size(model%fixes)
+            if (model%fixes(f)%field <= DISPLACEMENTS) cycle
+            self%gives_way(f, c) = share_an_edge(model, model%contacts(c)%slave, model%fixes(f)%group)
+         end do
+         if (.not. any(self%gives_way(:, c))) call raise(fault, EXIT_INPUT, 'Contact '// &
+            trim(model%contacts(c)%name)//': drainage = ''state'' releases &fix of p_w, p_c or p_a on the slave, '// &
+            'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')
+      end do
+      there = any(self%follows)
+   end subroutine build
+
+   !> Whether a group has all nodes of an edge of the slave: a boundary that only ends on it does not give way.
+   pure logical function share_an_edge(model, slave, group) result(shared)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: slave, group
+      logical, allocatable :: in_group(:)
+      integer :: e
+
+      allocate (in_group(size(model%domain%mesh%x, 2)), source=.false.)
+      in_group(model%domain%mesh%groups(group)%nodes) = .true.
+      shared = .false.
+      associate (edges => model%domain%mesh%groups(slave)%edges)
+         do e = 1, size(edges, 2)
+            shared = shared .or. all(in_group(edges(:, e)))
+         end do
+      end associate
+   end function share_an_edge
+
+   !> The impervious nodes at the displacements that the step starts from. What the last evaluation of the contacts left
+   !> behind stays. docs/theory/contact.md section 5. Fault EXIT_CONVERGENCE: a kernel refuses the displacements.
+   subroutine before_step(self, model, dt, solution, fault)
+      class(contact_drainage_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: dt
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      character(400) :: text
+      logical, allocatable :: sealed(:)
+      integer :: c, f
+
+      associate (unused => dt)
+      end associate
+      associate (contacts => solution%system%contacts, constraint => solution%constraint)
+         if (.not. start_points(contacts, solution%state%x)) then
+            call contact_message(contacts%status, text)
+            call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//trim(text)//'.')
+            return
+         end if
+         if (.not. allocated(constraint%released)) &
+            allocate (constraint%released(size(model%fixes), size(model%domain%mesh%x, 2)))
+         constraint%released = .false.
+         do c = 1, size(model%contacts)
+            associate (t => contacts%interfaces(c))
+               t%sealed = 0
+               if (.not. self%follows(c) .or. .not. t%acts) cycle
+               sealed = t%point%pressure > 0.0_wp .and. t%point%coverage >= HALF
+               t%sealed = count(sealed)
+               do f = 1, size(model%fixes)
+                  if (self%gives_way(f, c)) constraint%released(f, t%slave%node) = &
+                     constraint%released(f, t%slave%node) .or. sealed
+               end do
+            end associate
+         end do
+      end associate
+   end subroutine before_step
+end module contact_drainage

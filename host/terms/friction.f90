@@ -1,0 +1,95 @@
+! SPDX-License-Identifier: MIT
+!> Friction of contacts, keys of &contact: what it starts a step from, and what it has dissipated in one. The law of a
+!> node is in contact_friction. docs/theory/contact.md section 9.
+module friction
+   use exit_codes, only: EXIT_CONVERGENCE
+   use kinds, only: wp
+   use key_schema, only: UNBOUNDED
+   use key_table, only: key_table_t
+   use model_types, only: model_t, term_t
+   use namelists, only: group_t
+   use contact_friction, only: has_friction
+   use contact_types, only: contact_options_t, contact_message
+   use contact_interfaces, only: begin_friction, accept_friction
+   use faults, only: fault_t, raise
+   use scene_types, only: groups_named
+   use solution, only: solution_t
+   implicit none (type, external)
+   private
+   public :: friction_t
+
+   character(*), parameter :: IN_GROUP = 'contact'
+
+   type, extends(term_t) :: friction_t
+   contains
+      procedure, nopass :: declare
+      procedure :: build, before_step, accept
+   end type friction_t
+contains
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+      type(contact_options_t) :: options
+
+      if (k%group%name == IN_GROUP) call take(k, options)
+   end subroutine declare
+
+   subroutine take(k, options)
+      type(key_table_t), intent(inout) :: k
+      type(contact_options_t), intent(inout) :: options
+
+      call k%number('friction', options%friction, 0.0_wp, 100.0_wp, 'coefficient of Coulomb friction [-]')
+      call k%number('cohesion', options%cohesion, 0.0_wp, UNBOUNDED, 'shear stress that friction adds to [kPa]')
+      call k%number('tangential_penalty', options%tangential_penalty, 0.0_wp, UNBOUNDED, &
+                    'shear stress of a unit of slip before it slides [kN/m3]; 0: a tenth of the penalty')
+   end subroutine take
+
+   !> The options of the contacts. Raises no fault.
+   subroutine build(self, model, there, fault)
+      class(friction_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t) :: table
+      integer :: c
+
+      associate (u1 => self, u2 => fault)
+      end associate
+      there = .false.
+      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      do c = 1, size(model%contacts)
+         table%group = groups(c)
+         call take(table, model%contacts(c)%options)
+         there = there .or. has_friction(model%contacts(c)%options)
+      end do
+   end subroutine build
+
+   !> Displacements and gaps that the friction of a step starts from. Fault EXIT_CONVERGENCE: a kernel refuses them.
+   subroutine before_step(self, model, dt, solution, fault)
+      class(friction_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: dt
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      character(400) :: text
+
+      associate (u1 => self, u2 => model, u3 => dt)
+      end associate
+      if (begin_friction(solution%system%contacts, solution%state%x)) return
+      call contact_message(solution%system%contacts%status, text)
+      call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//trim(text)//'.')
+   end subroutine before_step
+
+   !> The tractions at the end of the step, and what sliding has dissipated.
+   subroutine accept(self, solution, dissipated)
+      class(friction_t), intent(inout) :: self
+      type(solution_t), intent(inout) :: solution
+      real(wp), intent(inout) :: dissipated
+      real(wp) :: by_sliding
+
+      associate (unused => self)
+      end associate
+      call accept_friction(solution%system%contacts, solution%next%x, by_sliding)
+      dissipated = dissipated + by_sliding
+   end subroutine accept
+end module friction

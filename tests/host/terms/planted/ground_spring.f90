@@ -1,0 +1,130 @@
+! SPDX-License-Identifier: MIT
+!> Springs to ground, &spring: every node of a group is held by k times its displacement, in both directions. A term of
+!> one file and one line of the registry, which a test gives to mud_host.
+module ground_spring
+   use kinds, only: wp
+   use faults, only: fault_t
+   use key_schema, only: REQUIRED, UNBOUNDED
+   use key_table, only: key_table_t
+   use linear_forces, only: linear_forces_t
+   use model_types, only: model_t, action_t, term_t
+   use name_search, only: mesh_group, check_stages
+   use namelists, only: group_t, LENGTH
+   use scene_types, only: acts_in, groups_named, item_of, place_of
+   use solution, only: solution_t
+   use unknown_fields, only: DISPLACEMENTS
+   implicit none (type, external)
+   private
+   public :: ground_spring_t
+
+   character(*), parameter :: NAME = 'spring'
+
+   type, extends(action_t) :: spring_t
+      real(wp) :: stiffness = 0.0_wp   !< Force over displacement of a node [kN/m].
+      integer :: place = 0             !< Place of the spring in the constraint.
+   end type spring_t
+
+   type, extends(term_t) :: ground_spring_t
+      type(spring_t), allocatable :: springs(:)
+   contains
+      procedure, nopass :: declare
+      procedure :: group, build, begin_run, before_step
+   end type ground_spring_t
+contains
+   function group(self) result(name_of_group)
+      class(ground_spring_t), intent(in) :: self
+      character(:), allocatable :: name_of_group
+
+      associate (unused => self)
+      end associate
+      name_of_group = NAME
+   end function group
+
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+      type(spring_t) :: nothing
+      character(LENGTH) :: boundary
+
+      if (k%group%name == NAME) call take(k, nothing, boundary)
+   end subroutine declare
+
+   subroutine take(k, spring, boundary)
+      type(key_table_t), intent(inout) :: k
+      type(spring_t), intent(inout) :: spring
+      character(LENGTH), intent(out) :: boundary
+
+      boundary = ''
+      call k%text('group', boundary, 'nodes that the springs hold', REQUIRED)
+      call k%number('stiffness', spring%stiffness, 0.0_wp, UNBOUNDED, 'force on a node over its displacement [kN/m]', &
+                    REQUIRED)
+      call k%texts('stages', spring%stages, 'names of stages; default: all')
+   end subroutine take
+
+   !> Fault EXIT_GROUP: a group or stage that is not defined.
+   subroutine build(self, model, there, fault)
+      class(ground_spring_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(out) :: there
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t) :: table
+      character(LENGTH) :: boundary
+      integer :: i
+
+      allocate (groups, source=groups_named(model%scene_t, NAME))
+      there = size(groups) > 0
+      allocate (self%springs(size(groups)))
+      do i = 1, size(groups)
+         associate (spring => self%springs(i))
+            spring%scene_item_t = item_of(groups(i))
+            spring%what = '&'//NAME
+            table%group = groups(i)
+            call take(table, spring, boundary)
+            spring%group = mesh_group(model%domain%mesh, boundary, place_of(spring), fault)
+            call check_stages(model%stages%name, spring%scene_item_t, spring%stages, fault)
+            if (fault%code /= 0) return
+            model%actions = [model%actions, spring%action_t]
+         end associate
+      end do
+   end subroutine build
+
+   !> An entry on the diagonal for every displacement. Raises no fault.
+   subroutine begin_run(self, model, solution, fault)
+      class(ground_spring_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      integer, allocatable :: at(:)
+      integer :: i
+
+      associate (unused => fault)
+      end associate
+      allocate (at(0))
+      if (.not. allocated(solution%constraint%linear)) allocate (solution%constraint%linear(0))
+      do i = 1, size(self%springs)
+         associate (nodes => model%domain%mesh%groups(self%springs(i)%group)%nodes)
+            at = pack(model%dofs%of(:DISPLACEMENTS, nodes), model%dofs%of(:DISPLACEMENTS, nodes) > 0)
+         end associate
+         solution%constraint%linear = [solution%constraint%linear, linear_forces_t(.false., .false., at, at, &
+                                       spread(self%springs(i)%stiffness, 1, size(at)))]
+         self%springs(i)%place = size(solution%constraint%linear)
+      end do
+   end subroutine begin_run
+
+   !> Raises no fault.
+   subroutine before_step(self, model, dt, solution, fault)
+      class(ground_spring_t), intent(inout) :: self
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: dt
+      type(solution_t), intent(inout) :: solution
+      type(fault_t), intent(inout) :: fault
+      integer :: i
+
+      associate (u1 => dt, u2 => fault)
+      end associate
+      do i = 1, size(self%springs)
+         solution%constraint%linear(self%springs(i)%place)%acts = &
+            acts_in(self%springs(i)%stages, model%stages(solution%at%stage)%name)
+      end do
+   end subroutine before_step
+end module ground_spring
