@@ -38,14 +38,12 @@ contains
       trial%next = trial%state
       if (allocated(trial%system%contacts%interfaces)) &
          trial%system%contacts%interfaces(:size(model%contacts))%acts = .false.
-      if (.not. unbalanced_forces(model%domain, model%dofs, trial%pattern, trial%constraint, trial%state, trial%next, &
-                                  trial%assembly, trial%system, forces)) return
+      if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, forces)) return
       where (abs(forces) < ROUNDING*trial%assembly%scale) forces = 0.0_wp
       touched = 0*forces
       if (allocated(trial%system%contacts%interfaces)) then
          call contacts_act(model, model%stages(1), trial%system%contacts)
-         if (.not. unbalanced_forces(model%domain, model%dofs, trial%pattern, trial%constraint, trial%state, &
-                                     trial%next, trial%assembly, trial%system, touched)) return
+         if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, touched)) return
          touched = touched - forces
       end if
       call add_weight_of_water(model, run, forces, standing)

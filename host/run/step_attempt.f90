@@ -97,14 +97,12 @@ contains
       scheme = scheme_of(stage, run, dt)
       if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, model%dofs, scheme, run%state, &
                                                                   run%constraint)
-      call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
-                     run%assembly, run%system, log)
+      call take_step(model%domain, model%dofs, scheme, control, run%solution_t, log)
       if (log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
          a0 = run%state%a
          run%state%a = 0.0_wp
-         call take_step(model%domain, model%dofs, run%pattern, scheme, run%constraint, control, run%state, run%next, &
-                        run%assembly, run%system, log)
+         call take_step(model%domain, model%dofs, scheme, control, run%solution_t, log)
          if (log%outcome /= CONVERGED) run%state%a = a0
       end if
       run%iterations = run%iterations + log%iterations
@@ -143,11 +141,11 @@ contains
    subroutine spread_sudden_loads(model, run)
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
+      real(wp), allocatable :: forces(:)
 
       call copy_state(run%state, run%next)
       run%next%gravity = gravity_at(model, run%state%time)
-      if (.not. unbalanced_forces(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
-                                  run%assembly, run%system, run%at%sudden)) deallocate (run%at%sudden)
+      if (unbalanced_forces(model%domain, model%dofs, run%solution_t, forces)) call move_alloc(forces, run%at%sudden)
    end subroutine spread_sudden_loads
 
    !> Shorter steps do not come to an end, or do not move the time [s].
@@ -201,8 +199,7 @@ contains
          call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
                                      run%state%time, run%constraint%acceleration)
       end if
-      call start_accelerations(model%domain, model%dofs, run%pattern, run%constraint, run%state, run%next, &
-                               run%assembly, run%system, log)
+      call start_accelerations(model%domain, model%dofs, run%solution_t, log)
       if (log%outcome /= CONVERGED) call explain_failure(model, stage, run, log, run%state%time, 0.0_wp, fault)
    end subroutine first_accelerations
 end module step_attempt

@@ -22,6 +22,7 @@ module newton_step
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use stress_tolerance, only: follow_newton, is_tight
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
+   use solution, only: solution_t
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
@@ -37,169 +38,267 @@ module newton_step
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of an unknown: old, predicted, corrected, and their
                                                !< difference.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
+
+   !> The iterate of a step under way.
+   type :: iterate_t
+      real(wp), allocatable :: rhs(:), dx(:)   !< Residual with minus sign [kN, m3/s], correction [m, kPa]. (unknowns)
+      real(wp), allocatable :: touched(:)      !< Forces of contacts before, where steps are measured by their change.
+      real(wp) :: norm_0 = -1.0_wp             !< Norm of the first residual, or of the second where it is larger.
+      real(wp) :: begun = 0.0_wp               !< Norm that a reduction is a share of.
+      real(wp) :: rounded(FIELDS) = 0.0_wp     !< Change of the balances by the rounding of the unknowns [kN, m3/s].
+      real(wp) :: t0 = 0.0_wp                  !< Wall clock when the present part of the work began [s].
+      logical :: with_slopes = .true.          !< The next pass makes the slopes too.
+      logical :: guessed = .false.             !< The first iterate is a guess, not the state before.
+      logical :: rough = .false.               !< Stresses are integrated less closely than the step asks for.
+      logical :: done = .false., again = .false.   !< The step is solved; its equations are made again.
+   end type iterate_t
 contains
-   !> Solves a step from `old` to `new` over scheme%dt; `new` is of use only after CONVERGED. docs/theory/host.md
-   !> section 5. log%outcome says how it ends: CONVERGED; NOT_CONVERGED after max_iterations or beyond an error of 1e10;
-   !> MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see assembly, contacts); BODY_FREE with a
-   !> singular matrix; SOLVER_FAILED.
-   subroutine take_step(domain, dofs, pattern, scheme, constraint, control, old, new, assembly, system, log)
+   !> Solves a step from solution%state to solution%next over scheme%dt; the latter is of use only after CONVERGED.
+   !> docs/theory/host.md section 5. log%outcome says how it ends: CONVERGED; NOT_CONVERGED after max_iterations or
+   !> beyond an error of 1e10; MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see assembly,
+   !> contacts); BODY_FREE with a singular matrix; SOLVER_FAILED.
+   subroutine take_step(domain, dofs, scheme, control, solution, log)
       type(domain_t), intent(inout) :: domain   !< The tolerance of its laws changes, see stress_tolerance.
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(inout) :: pattern   !< Grows with the contacts.
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(inout) :: constraint   !< Pressures with a limit change their side.
       type(control_t), intent(in) :: control
-      type(state_t), intent(in) :: old
-      type(state_t), intent(inout) :: new
-      type(assembly_t), intent(inout) :: assembly
-      type(system_t), intent(inout) :: system
+      type(solution_t), intent(inout) :: solution
       type(log_t), intent(out) :: log
-      real(wp), allocatable :: rhs(:), dx(:)
-      real(wp), allocatable :: touched(:)   !< Forces of contacts before, where steps are measured by what they change.
-      real(wp) :: norm, norm_0, begun, t0   !< begun: the norm that a reduction is a share of.
-      real(wp) :: rounded(FIELDS)           !< Change of the balances by the rounding of the unknowns [kN, m3/s].
+      type(iterate_t) :: at
       integer :: status
-      logical :: with_tangent, guessed, turned, rough
 
-      t0 = clock()
-      allocate (rhs(dofs%n), dx(dofs%n))
-      new%time = old%time + scheme%dt
-      call begin_passes(scheme, constraint, control, assembly)
-      ! Laws that change over the step are its own.
-      call follow_newton(control%tolerance, domain%regions)
-      rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
-      if (rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES))
-      call follow_turns(system%contacts, fresh=.true.)
-      if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
-         log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, touched))
-         if (log%outcome /= CONVERGED) return
-      end if
-      call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
-      call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
-      norm_0 = -1.0_wp
-      begun = 0.0_wp
-      rounded = 0.0_wp
-      with_tangent = .true.
-      guessed = .not. control%no_predictor
+      at%t0 = clock()
+      call begin_step(domain, dofs, scheme, control, solution, at, log)
+      if (log%outcome /= CONVERGED) return
       do
-         if (.not. pass(with_tangent)) then
-            ! A guess that is refused says nothing of the step: it starts again from what is known.
-            if (.not. guessed .or. log%iterations > 0) return
-            guessed = .false.
-            log%refused_guess = .true.
-            log%outcome = CONVERGED
-            new%x = old%x
-            call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+         call make_equations(domain, dofs, scheme, control, solution, at, log)
+         if (log%outcome /= CONVERGED) then
+            if (.not. at%guessed .or. log%iterations > 0) return
+            call drop_guess(scheme, solution, at, log)
             cycle
          end if
          if (log%iterations > 0) then
-            call choose_sides(dofs, pattern, assembly%values, new%x, rhs, assembly%scale, control%tolerance, &
-                              constraint, turned)
-            turned = turned .or. contacts_turn(system%contacts)
-            call measure(dofs, constraint, assembly, rhs, system%rounding, system%largest, log)
-            if (log%iterations == 1) log%first_error = log%error
-            norm = norm2(pack(rhs, .not. constraint%fixed))
-            ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
-            if (log%iterations == 1) then
-               norm_0 = max(norm_0, norm)
-               log%balanced = norm_0 <= rounding_in(scheme%kind)*norm2(assembly%scale)
-               begun = max(norm_0, ROUNDING*norm2(assembly%scale))
-            end if
-            log%reduction = norm/max(begun, tiny(1.0_wp))
-            ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
-            if (.not. turned) then
-               if (good_enough(control, log)) then
-                  if (.not. rough) exit
-                  call follow_error(0.0_wp)   ! It is looked at again, with stresses as the step asks for.
-                  cycle
-               end if
-               call note_stagnation(control, log)
-               if (log%stagnated) exit
-               if (rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0))
-            end if
-            if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. &
-                .not. all(log%error < HOPELESS)) then
-               log%outcome = NOT_CONVERGED
-               return
-            end if
+            call judge_iterate(domain, dofs, scheme, control, solution, at, log)
+            if (at%done) exit
+            if (log%outcome /= CONVERGED) return
+            if (at%again) cycle
             ! The slopes at the present values, where the last pass left them out.
-            if (.not. with_tangent) then
-               assembly%source = AS_BEFORE
-               if (.not. pass(.true.)) return
+            if (.not. at%with_slopes) then
+               at%with_slopes = .true.
+               solution%assembly%source = AS_BEFORE
+               call make_equations(domain, dofs, scheme, control, solution, at, log)
+               if (log%outcome /= CONVERGED) return
             end if
-         else
-            norm_0 = norm2(pack(rhs, .not. constraint%fixed))
          end if
-         call constrain(dofs, pattern, constraint, new%x, assembly%values, rhs)
-         ! A prescribed motion that strains nothing leaves the rounding of the forces that it asked for, and no other.
-         if (log%iterations == 0) then
-            system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, rhs)
-            system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
-               rounding_of_saturation(domain, dofs, constraint, old, scheme)/control%tolerance)
-            rounded = rounding_of_unknowns(dofs, pattern, constraint, assembly%values, new%x)
-            system%rounding = max(system%rounding, rounded/control%tolerance)
-            assembly%unresolved = max(assembly%unresolved, rounded(1)/control%tolerance)
-         end if
-         ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
-         if (all(control%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
-         call solve_step(dofs, pattern, constraint, assembly, linear_tolerance(control), rhs, system, dx, status)
-         if (needs_stiffness(status, system, assembly%fallback)) then
-            with_tangent = .true.
-            t0 = clock()
-            cycle
-         end if
+         associate (s => solution)
+            call constrain(dofs, s%pattern, s%constraint, s%next%x, s%assembly%values, at%rhs)
+            if (log%iterations == 0) call find_roundings(domain, dofs, scheme, control, solution, at)
+            ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
+            if (all(control%measure /= [BY_FORCES, BY_CHANGE])) s%system%factored = .false.
+            call solve_step(dofs, s%pattern, s%constraint, s%assembly, linear_tolerance(control), at%rhs, s%system, &
+                            at%dx, status)
+            if (needs_stiffness(status, s%system, s%assembly%fallback)) then
+               at%with_slopes = .true.
+               at%t0 = clock()
+               cycle
+            end if
+         end associate
          if (status /= SOLVED) then
             log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
             return
          end if
-         t0 = clock()
-         log%iterations = log%iterations + 1
-         call follow_turns(system%contacts, fresh=.false.)
-         log%before = log%changed
-         call add_correction(dofs, dx, new%x, log%correction, log%changed)
-         call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
-         with_tangent = .false.
+         call correct(dofs, scheme, solution, at, log)
       end do
-      ! Those of iterates on the way, and of steps that fail, may be of any size.
-      system%largest = max(system%largest, log%forces)
-      system%first_error = maxval(log%first_error)
-      call follow_turns(system%contacts, fresh=.true.)
-      assembly%slopes%known = .true.
-      call add_elapsed(system%seconds(T_REST), t0)
-   contains
-      !> Stresses of the next pass are integrated to a share of an error of Newton's method: the first passes cost less.
-      !> docs/theory/host.md section 5.1.
-      subroutine follow_error(error)
-         real(wp), intent(in) :: error
+      associate (system => solution%system)
+         ! Those of iterates on the way, and of steps that fail, may be of any size.
+         system%largest = max(system%largest, log%forces)
+         system%first_error = maxval(log%first_error)
+         call follow_turns(system%contacts, fresh=.true.)
+         solution%assembly%slopes%known = .true.
+         call add_elapsed(system%seconds(T_REST), at%t0)
+      end associate
+   end subroutine take_step
 
-         rough = error > control%tolerance/STRESS_SHARE
-         call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), control%tolerance, rough), domain%regions)
-      end subroutine follow_error
+   !> Sets a step at its first guess, and says how closely its passes are integrated.
+   subroutine begin_step(domain, dofs, scheme, control, solution, at, log)
+      type(domain_t), intent(inout) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(control_t), intent(in) :: control
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+      type(log_t), intent(inout) :: log
 
-      !> Residual, with minus sign in rhs, and slopes; false if the material refuses.
-      logical function pass(slopes)
-         logical, intent(in) :: slopes
-         real(wp) :: spent
+      associate (old => solution%state, new => solution%next, assembly => solution%assembly, system => solution%system)
+         allocate (at%rhs(dofs%n), at%dx(dofs%n))
+         at%guessed = .not. control%no_predictor
+         new%time = old%time + scheme%dt
+         call begin_passes(scheme, solution%constraint, control, assembly)
+         ! Laws that change over the step are its own.
+         call follow_newton(control%tolerance, domain%regions)
+         at%rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
+         if (at%rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES), &
+                                         control, domain, at)
+         call follow_turns(system%contacts, fresh=.true.)
+         if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
+            log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, at%touched))
+            if (log%outcome /= CONVERGED) return
+         end if
+         call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
+         call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+      end associate
+   end subroutine begin_step
 
+   !> Begins a step again from what is known: a guess that is refused says nothing of the step.
+   subroutine drop_guess(scheme, solution, at, log)
+      type(scheme_t), intent(in) :: scheme
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+      type(log_t), intent(inout) :: log
+
+      at%guessed = .false.
+      log%refused_guess = .true.
+      log%outcome = CONVERGED
+      associate (old => solution%state, new => solution%next)
+         new%x = old%x
+         call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+      end associate
+   end subroutine drop_guess
+
+   !> Integrates the stresses of the next pass to a share of an error of Newton's method: the first passes cost less.
+   !> docs/theory/host.md section 5.1.
+   subroutine follow_error(error, control, domain, at)
+      real(wp), intent(in) :: error   !< [-]
+      type(control_t), intent(in) :: control
+      type(domain_t), intent(inout) :: domain
+      type(iterate_t), intent(inout) :: at
+
+      at%rough = error > control%tolerance/STRESS_SHARE
+      call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), control%tolerance, at%rough), domain%regions)
+   end subroutine follow_error
+
+   !> Makes the residual of the iterate, with minus sign in at%rhs, and its slopes where they are asked for.
+   !> log%outcome: CONTACT_FAILED, MATERIAL_FAILED where these refuse it.
+   subroutine make_equations(domain, dofs, scheme, control, solution, at, log)
+      type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(control_t), intent(in) :: control
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+      type(log_t), intent(inout) :: log
+      real(wp) :: spent
+
+      associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
+                 system => solution%system, pattern => solution%pattern)
          spent = 0.0_wp
-         call add_elapsed(system%seconds(T_REST), t0)
-         pass = update_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), slopes, assembly)
-         if (.not. pass) log%outcome = CONTACT_FAILED
-         if (.not. pass) return
-         call add_elapsed(system%seconds(T_CONTACT), t0)
-         call assemble(domain, dofs, pattern, scheme, old, new, slopes, assembly)
+         call add_elapsed(system%seconds(T_REST), at%t0)
+         if (.not. update_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), at%with_slopes, &
+                                   assembly)) then
+            log%outcome = CONTACT_FAILED
+            return
+         end if
+         call add_elapsed(system%seconds(T_CONTACT), at%t0)
+         call assemble(domain, dofs, pattern, scheme, old, new, at%with_slopes, assembly)
          system%n_pass = system%n_pass + 1
          log%rate_evaluations = log%rate_evaluations + assembly%rate_evaluations
-         pass = assembly%bad_element == 0
-         call add_elapsed(spent, t0)
+         call add_elapsed(spent, at%t0)
          system%seconds(T_MATERIAL) = system%seconds(T_MATERIAL) + spent*assembly%material
          system%seconds(T_ASSEMBLY) = system%seconds(T_ASSEMBLY) + spent*(1 - assembly%material)
-         if (.not. pass) log%outcome = MATERIAL_FAILED
-         if (.not. pass) return
-         call add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
-         assembly%unresolved = max(rounding_of_ties(system%contacts), rounded(1))/control%tolerance
-      end function pass
-   end subroutine take_step
+         if (assembly%bad_element > 0) then
+            log%outcome = MATERIAL_FAILED
+            return
+         end if
+         call add_what_acts(dofs, pattern, scheme, solution%constraint, old, new, at%with_slopes, at%touched, &
+                            assembly, system, at%rhs, at%t0)
+         assembly%unresolved = max(rounding_of_ties(system%contacts), at%rounded(1))/control%tolerance
+         if (log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
+      end associate
+   end subroutine make_equations
+
+   !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
+   !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.
+   subroutine judge_iterate(domain, dofs, scheme, control, solution, at, log)
+      type(domain_t), intent(inout) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(control_t), intent(in) :: control
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+      type(log_t), intent(inout) :: log
+      real(wp) :: norm
+      logical :: turned, good
+
+      at%again = .false.
+      associate (constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
+         call choose_sides(dofs, solution%pattern, assembly%values, solution%next%x, at%rhs, assembly%scale, &
+                           control%tolerance, constraint, turned)
+         turned = turned .or. contacts_turn(system%contacts)
+         call measure(dofs, constraint, assembly, at%rhs, system%rounding, system%largest, log)
+         norm = norm2(pack(at%rhs, .not. constraint%fixed))
+         ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
+         if (log%iterations == 1) then
+            log%first_error = log%error
+            at%norm_0 = max(at%norm_0, norm)
+            log%balanced = at%norm_0 <= rounding_in(scheme%kind)*norm2(assembly%scale)
+            at%begun = max(at%norm_0, ROUNDING*norm2(assembly%scale))
+         end if
+         log%reduction = norm/max(at%begun, tiny(1.0_wp))
+      end associate
+      ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
+      if (.not. turned) then
+         good = good_enough(control, log)
+         at%done = good .and. .not. at%rough
+         at%again = good .and. at%rough
+         if (at%again) call follow_error(0.0_wp, control, domain, at)
+         if (good) return
+         call note_stagnation(control, log)
+         at%done = log%stagnated
+         if (at%done) return
+         if (at%rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0), control, domain, at)
+      end if
+      if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. .not. all(log%error < HOPELESS)) &
+         log%outcome = NOT_CONVERGED
+   end subroutine judge_iterate
+
+   !> Finds what no residual of a step can be told from, before its first solution. A prescribed motion that strains
+   !> nothing leaves the rounding of the forces that it asked for, and no other.
+   subroutine find_roundings(domain, dofs, scheme, control, solution, at)
+      type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(control_t), intent(in) :: control
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+
+      associate (system => solution%system, constraint => solution%constraint, assembly => solution%assembly)
+         system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, at%rhs)
+         system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
+            rounding_of_saturation(domain, dofs, constraint, solution%state, scheme)/control%tolerance)
+         at%rounded = rounding_of_unknowns(dofs, solution%pattern, constraint, assembly%values, solution%next%x)
+         system%rounding = max(system%rounding, at%rounded/control%tolerance)
+         assembly%unresolved = max(assembly%unresolved, at%rounded(1)/control%tolerance)
+      end associate
+   end subroutine find_roundings
+
+   !> Adds a linear solution to the iterate.
+   subroutine correct(dofs, scheme, solution, at, log)
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+      type(log_t), intent(inout) :: log
+
+      at%t0 = clock()
+      log%iterations = log%iterations + 1
+      call follow_turns(solution%system%contacts, fresh=.false.)
+      log%before = log%changed
+      associate (old => solution%state, new => solution%next)
+         call add_correction(dofs, at%dx, new%x, log%correction, log%changed)
+         call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+      end associate
+      at%with_slopes = .false.
+   end subroutine correct
 
    !> Whether the matrix is to be made once more, with a stiffness for points that have none: for the open ones where it
    !> is singular or indefinite, for all where it stays singular; `fallback` is then of the next level.
@@ -335,100 +434,96 @@ contains
    end subroutine add_what_acts
 
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
-   !> docs/theory/host.md section 4.1. Into `a` of both states [m/s2]. Outcomes as of take_step, but for NOT_CONVERGED.
-   subroutine start_accelerations(domain, dofs, pattern, constraint, state, work, assembly, system, log)
+   !> docs/theory/host.md section 4.1. Into `a` of both states, which are equal [m/s2]. Outcomes as of take_step, but
+   !> for NOT_CONVERGED.
+   subroutine start_accelerations(domain, dofs, solution, log)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(inout) :: pattern
-      type(constraint_t), intent(in) :: constraint
-      type(state_t), intent(inout) :: state
-      type(state_t), intent(inout) :: work       !< Equal to state.
-      type(assembly_t), intent(inout) :: assembly
-      type(system_t), intent(inout) :: system
+      type(solution_t), intent(inout) :: solution
       type(log_t), intent(out) :: log
       type(constraint_t) :: held
       type(scheme_t) :: scheme
       real(wp), allocatable :: rhs(:), dx(:)
       integer :: status, i, f, steps
 
-      ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
-      scheme = scheme_t(kind=DYNAMIC, has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, &
-                        l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
-      held = constraint
-      held%fixed = constraint%fixed .or. dofs%field > DISPLACEMENTS
-      held%target = 0.0_wp
-      if (allocated(constraint%acceleration)) held%target = constraint%acceleration
-      held%air = .false.
-      assembly%air = .false.
-      state%a = 0.0_wp
-      work%a = 0.0_wp
-      allocate (rhs(dofs%n), dx(dofs%n))
-      if (.not. update_contacts(system, dofs, pattern, state%x, .false., assembly)) then
-         log%outcome = CONTACT_FAILED
-         return
-      end if
-      call assemble(domain, dofs, pattern, scheme, state, work, .true., assembly)
-      if (assembly%bad_element > 0) then
-         log%outcome = MATERIAL_FAILED
-         return
-      end if
-      call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
-      if (allocated(held%linear)) call add_linear_forces(held%linear, dofs, pattern, scheme, state, work, .true., &
-                                                     assembly)
-      if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
-                                                    assembly%residual, assembly%scale, assembly%values)
-      rhs = held%load_0 - held%offset - assembly%residual
-      call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
-      if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
-      system%analysed = .true.
-      call factorise(system%sparse, assembly%values, status)
-      system%factored = .false.
-      if (status == SOLVED) call solve_by_factors(system%sparse, assembly%values, rhs, 1 + 0*rhs, 0.0_wp, MOST_STEPS, &
-                                                  dx, steps, status)
-      if (status == INACCURATE) status = SOLVED
-      if (status /= SOLVED) then
-         log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
-         return
-      end if
-      do i = 1, size(state%a, 2)
-         do f = 1, 2
-            if (dofs%of(f, i) > 0) state%a(f, i) = dx(dofs%of(f, i))
+      associate (state => solution%state, work => solution%next, pattern => solution%pattern, &
+                 constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
+         ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
+         scheme = scheme_t(kind=DYNAMIC, has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, &
+                           c_p=0.0_wp)
+         held = constraint
+         held%fixed = constraint%fixed .or. dofs%field > DISPLACEMENTS
+         held%target = 0.0_wp
+         if (allocated(constraint%acceleration)) held%target = constraint%acceleration
+         held%air = .false.
+         assembly%air = .false.
+         state%a = 0.0_wp
+         work%a = 0.0_wp
+         allocate (rhs(dofs%n), dx(dofs%n))
+         if (.not. update_contacts(system, dofs, pattern, state%x, .false., assembly)) then
+            log%outcome = CONTACT_FAILED
+            return
+         end if
+         call assemble(domain, dofs, pattern, scheme, state, work, .true., assembly)
+         if (assembly%bad_element > 0) then
+            log%outcome = MATERIAL_FAILED
+            return
+         end if
+         call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
+         if (allocated(held%linear)) call add_linear_forces(held%linear, dofs, pattern, scheme, state, work, .true., &
+                                                        assembly)
+         if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
+                                                       assembly%residual, assembly%scale, assembly%values)
+         rhs = held%load_0 - held%offset - assembly%residual
+         call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
+         if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
+         system%analysed = .true.
+         call factorise(system%sparse, assembly%values, status)
+         system%factored = .false.
+         if (status == SOLVED) call solve_by_factors(system%sparse, assembly%values, rhs, 1 + 0*rhs, 0.0_wp, &
+                                                     MOST_STEPS, dx, steps, status)
+         if (status == INACCURATE) status = SOLVED
+         if (status /= SOLVED) then
+            log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
+            return
+         end if
+         do i = 1, size(state%a, 2)
+            do f = 1, 2
+               if (dofs%of(f, i) > 0) state%a(f, i) = dx(dofs%of(f, i))
+            end do
          end do
-      end do
-      work%a = state%a
+         work%a = state%a
+      end associate
    end subroutine start_accelerations
 
    !> Forces on the free displacements that the loads of a state at rest leave without balance: those that act at once.
    !> docs/theory/host.md section 4.4. False where the material or a contact refuses the state.
-   logical function unbalanced_forces(domain, dofs, pattern, constraint, state, work, assembly, system, forces) &
-      result(good)
+   logical function unbalanced_forces(domain, dofs, solution, forces) result(good)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(inout) :: pattern
-      type(constraint_t), intent(in) :: constraint   !< load_0: the loads.
-      type(state_t), intent(in) :: state
-      type(state_t), intent(inout) :: work           !< Equal to state.
-      type(assembly_t), intent(inout) :: assembly
-      type(system_t), intent(inout) :: system
+      type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads.
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
       type(constraint_t) :: held
       type(scheme_t) :: scheme
       real(wp), allocatable :: touched(:)
       real(wp) :: t0
 
-      t0 = clock()
-      allocate (forces(dofs%n), source=0.0_wp)
-      scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
-      held = constraint
-      held%load_1 = held%load_0
-      assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
-      call begin_passes(scheme, held, control_t(), assembly)
-      good = update_contacts(system, dofs, pattern, state%x, .false., assembly)
-      if (good) call assemble(domain, dofs, pattern, scheme, state, work, .false., assembly)
-      if (good) good = assembly%bad_element == 0
-      if (.not. good) return
-      call add_what_acts(dofs, pattern, scheme, held, state, work, .false., touched, assembly, system, forces, t0)
-      where (constraint%fixed .or. dofs%field > DISPLACEMENTS) forces = 0.0_wp
+      associate (state => solution%state, work => solution%next, pattern => solution%pattern, &
+                 constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
+         t0 = clock()
+         allocate (forces(dofs%n), source=0.0_wp)
+         scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
+         held = constraint
+         held%load_1 = held%load_0
+         assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
+         call begin_passes(scheme, held, control_t(), assembly)
+         good = update_contacts(system, dofs, pattern, state%x, .false., assembly)
+         if (good) call assemble(domain, dofs, pattern, scheme, state, work, .false., assembly)
+         if (good) good = assembly%bad_element == 0
+         if (.not. good) return
+         call add_what_acts(dofs, pattern, scheme, held, state, work, .false., touched, assembly, system, forces, t0)
+         where (constraint%fixed .or. dofs%field > DISPLACEMENTS) forces = 0.0_wp
+      end associate
    end function unbalanced_forces
 
    !> Inertia of rigid bodies.
