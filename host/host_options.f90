@@ -19,7 +19,7 @@ module host_options
       character(:), allocatable :: step_tolerance, fineness   !< Values in place of those of the scene; blank: none.
       character(WORD_LENGTH), allocatable :: set(:)  !< Keys and their values in place of those of the scene.
       logical :: quiet = .false.                     !< Errors and warnings only are printed.
-      logical :: verbose = .false.                   !< What the run costs is printed.
+      logical :: verbose = .false.                   !< Memory, times and counters of the run are printed.
       logical :: only_check = .false.                !< Nothing is run.
    end type options_t
 contains

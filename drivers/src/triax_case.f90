@@ -8,7 +8,7 @@ module triax_case
    use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, given, line_of
    use triax_keys, only: CASE_KEYS, check_keys
    use triax_control, only: CONTROL_TOLERANCE
-   use triax_stage, only: stage_t
+   use triax_stage, only: test_stage_t
    use triax_stage_reader, only: read_stage
    use material_point, only: material_t
    use material_registry, only: new_material
@@ -24,7 +24,7 @@ module triax_case
       character(LENGTH) :: file = '', name = '', title = '', material = ''
       type(soil_t) :: soil
       type(point_t) :: start
-      type(stage_t), allocatable :: stages(:)
+      type(test_stage_t), allocatable :: stages(:)
       real(wp) :: control_tolerance = CONTROL_TOLERANCE   !< Tolerance of what is held, relative.
       real(wp) :: accuracy = 0.0_wp      !< Relative error wanted in the histories; 0: none asked for.
       integer :: max_updates = huge(0)   !< The test stops after so many updates of the material.

@@ -2,7 +2,7 @@
 !> Columns of the results: what they are called, what they mean, and their values at a point.
 module triax_columns
    use kinds, only: wp
-   use triax_stage, only: stage_t, general_control
+   use triax_stage, only: test_stage_t, general_control
    use triax_stage_run, only: stage_run_t
    use triax_point, only: soil_t, point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
                           radial_stress, axial_strain, radial_strain, volumetric_strain, AXIAL
@@ -54,7 +54,7 @@ contains
    !> where the law has them.
    function columns_shown(soil, stages) result(shown)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stages(:)   !< General controls want the components of tensors.
+      type(test_stage_t), intent(in) :: stages(:)   !< General controls want the components of tensors.
       integer, allocatable :: shown(:)
       integer :: i
 

@@ -7,7 +7,7 @@ module triax_control
    use texts, only: short, whole
    use dense, only: solve, outer
    use triax_air, only: closed_air_t, air_now_t, closing, air_of
-   use triax_stage, only: stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
+   use triax_stage, only: test_stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use material_point, only: MOST_GUARDS, report_t
    use triax_point, only: soil_t, point_t, tangent_t, update_point, save_update, update_sentence, void_ratio, &
                           saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
@@ -67,7 +67,7 @@ contains
    !> Plans a path segment of a stage from the present state of the sample. Constraints: see triax_stage.
    subroutine plan_path(soil, stage, target, point, plan)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       real(wp), intent(in) :: target   !< Value of what leads, at the end. [-] or [unit of stress of the law].
       type(point_t), intent(in) :: point
       type(plan_t), intent(out) :: plan
@@ -151,7 +151,7 @@ contains
    !> law], compression positive.
    pure real(wp) function quantity(soil, stage, which, point)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       integer, intent(in) :: which   !< BY_*
       type(point_t), intent(in) :: point
       type(plan_t) :: plan

@@ -9,7 +9,7 @@ module triax_stage
    use, intrinsic :: iso_fortran_env, only: wp => real64
    implicit none (type, external)
    private
-   public :: stage_t, quantity_t, set_constraints, quantity_rows, leads_of, keeps_volume, shear_control, &
+   public :: test_stage_t, quantity_t, set_constraints, quantity_rows, leads_of, keeps_volume, shear_control, &
              general_control
    public :: CONTROL_NAMES, QUANTITIES, STRAIN_PATH, STRESS_PATH, LINEAR, CONSTANT_NET_STRESS
    public :: BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
@@ -45,7 +45,7 @@ module triax_stage
       'constant_net_stress', 'strain_path', 'stress_path', 'linear']
 
    !> One stage of a test.
-   type :: stage_t
+   type :: test_stage_t
       integer :: control = 0
       integer :: line = 0
       integer :: lead = 0                    !< BY_*
@@ -69,7 +69,7 @@ module triax_stage
       logical :: has_centre = .false.        !< Otherwise cycles are about where the stage begins.
       real(wp) :: stop_r_u = 0.0_wp          !< Pore pressure ratio that ends the stage, 0: none.
       real(wp) :: stop_double_amplitude = 0.0_wp   !< Strain between two reversals that ends it, 0: none.
-   end type stage_t
+   end type test_stage_t
 
    real(wp), parameter :: NOTHING(6) = 0.0_wp
    real(wp), parameter :: AXIAL_ROW(6) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
@@ -156,7 +156,7 @@ contains
    !> Fills the constraints of a named control; those of `linear`, and given changes, stand already. Factors of 11, 22,
    !> 33, 12, 13, 23 (engineering shear), compression positive.
    subroutine set_constraints(stage, lead)
-      type(stage_t), intent(inout) :: stage
+      type(test_stage_t), intent(inout) :: stage
       integer, intent(in) :: lead   !< BY_*, what leads; for stress cycles the strain that is driven.
       integer :: i
 

@@ -9,7 +9,7 @@ module triax_stage_reader
    use spelling, only: nearest_name
    use key_schema, only: describe_key, get_text, get_number, get_numbers, line_of, given, word_is
    use triax_keys, only: CASE_KEYS, keys_in
-   use triax_stage, only: stage_t, set_constraints, leads_of, keeps_volume, CONTROL_NAMES, QUANTITIES, LINEAR, &
+   use triax_stage, only: test_stage_t, set_constraints, leads_of, keeps_volume, CONTROL_NAMES, QUANTITIES, LINEAR, &
                           BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    implicit none (type, external)
    private
@@ -26,7 +26,7 @@ contains
    subroutine read_stage(group, unit, stage, fault)
       type(group_t), intent(in) :: group
       type(stress_unit_t), intent(in) :: unit   !< Unit of stress of the material.
-      type(stage_t), intent(out) :: stage
+      type(test_stage_t), intent(out) :: stage
       type(fault_t), intent(inout) :: fault
       logical :: found
 
@@ -113,7 +113,7 @@ contains
 
    subroutine read_control(group, stage, fault)
       type(group_t), intent(in) :: group
-      type(stage_t), intent(inout) :: stage
+      type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
 
       call read_word(group, 'control', CONTROL_NAMES, stage%control, fault)
@@ -123,7 +123,7 @@ contains
    !> Cycles: by what, how many, how far. The stage is then led by the strain that is driven.
    subroutine read_cycles(group, stage, fault)
       type(group_t), intent(in) :: group
-      type(stage_t), intent(inout) :: stage
+      type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: OF_CYCLES(4) = [character(21) :: 'cycles', 'amplitude', 'centre', &
                                                  'stop_double_amplitude']
@@ -171,7 +171,7 @@ contains
    subroutine read_lead(group, unit, stage, fault)
       type(group_t), intent(in) :: group
       type(stress_unit_t), intent(in) :: unit
-      type(stage_t), intent(inout) :: stage
+      type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
       integer, allocatable :: leads(:)
       character(:), allocatable :: choice
@@ -239,7 +239,7 @@ contains
    !> The path of suction.
    subroutine read_water(group, stage, fault)
       type(group_t), intent(in) :: group
-      type(stage_t), intent(inout) :: stage
+      type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: key
 

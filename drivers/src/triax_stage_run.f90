@@ -6,7 +6,7 @@ module triax_stage_run
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, EXIT_RUN
    use texts, only: short, whole
-   use triax_stage, only: stage_t, keeps_volume, shear_control, QUANTITIES
+   use triax_stage, only: test_stage_t, keeps_volume, shear_control, QUANTITIES
    use triax_control, only: plan_t, tally_t, plan_path, advance, lead, quantity
    use triax_point, only: soil_t, point_t, AXIAL, RADIAL
    implicit none (type, external)
@@ -43,7 +43,7 @@ contains
    !> not fit the suction of the sample.
    subroutine begin_stage(soil, stage, point, pressure, run, fault)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
       real(wp), intent(in) :: pressure   !< Excess pore pressure so far [unit of stress of the law].
       type(stage_run_t), intent(out) :: run
@@ -75,7 +75,7 @@ contains
    !> Faults: those of advance; EXIT_RUN: the stress of a cycle is not reached within a strain of MAX_WAY.
    subroutine next_increment(soil, stage, run, point, tally, fault)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       type(stage_run_t), intent(inout) :: run
       type(point_t), intent(inout) :: point
       type(tally_t), intent(inout) :: tally
@@ -139,7 +139,7 @@ contains
    !> The cycle that a way belongs to: ways 2n - 1 and 2n make cycle n; the return to the centre belongs to the last.
    !> 0: the stage has no cycles.
    pure integer function cycle_of(stage, way)
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       integer, intent(in) :: way
 
       cycle_of = min((way + 1)/2, stage%cycles)
@@ -148,7 +148,7 @@ contains
    !> Begins the next way that has a length, or finishes the stage after the last one.
    recursive subroutine next_way(soil, stage, point, run)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
       type(stage_run_t), intent(inout) :: run
 
@@ -179,7 +179,7 @@ contains
    !> Distance of the stress of a cycle from its reversal [unit of stress of the law].
    pure real(wp) function missing(soil, stage, run, point)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       type(stage_run_t), intent(in) :: run
       type(point_t), intent(in) :: point
 
@@ -189,7 +189,7 @@ contains
    !> The part of an increment after which the stress of a cycle is reached: regula falsi with bisection (Illinois).
    subroutine find_goal(soil, stage, run, before, point, tally, fault)
       type(soil_t), intent(in) :: soil
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       type(stage_run_t), intent(inout) :: run
       type(point_t), intent(in) :: before
       type(point_t), intent(inout) :: point
@@ -228,7 +228,7 @@ contains
 
    !> Effective stress whose total is constant in an undrained test: radial, vertical in simple shear [unit of stress].
    pure real(wp) function confining_stress(stage, point)
-      type(stage_t), intent(in) :: stage
+      type(test_stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
 
       confining_stress = 0.5_wp*sum(point%stress(RADIAL))

@@ -3,7 +3,7 @@
 module boundary_conditions
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t, unknowns_of_body
-   use generalised_alpha, only: scheme_t, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t, has_rates
    use limited_pressures, only: begin_sides
    use model_types, only: model_t, factor_at
    use porous_domain, only: state_t
@@ -114,7 +114,7 @@ contains
          end associate
       end do
       call begin_sides(dofs, x, constraint)
-      if (stage%kind /= STATIC) return
+      if (has_rates(stage%kind)) return
       do i = 1, dofs%n
          if (dofs%field(i) <= DISPLACEMENTS) cycle
          constraint%fixed(i) = .true.
@@ -152,7 +152,7 @@ contains
                   at = dofs%of(f, node)
                   if (at == 0) cycle
                   constraint%target(at) = state%x(f, node)
-                  if (scheme%kind /= DYNAMIC) cycle
+                  if (.not. scheme%has_inertia) cycle
                   a = acceleration_at(model, fix, node, scheme, state%time + dt)
                   constraint%target(at) = state%x(f, node) + dt*state%v(f, node) &
                                           + dt**2*((0.5_wp - scheme%beta)*state%a(f, node) + scheme%beta*a)

@@ -6,7 +6,7 @@ module free_bodies
    use contact_friction, only: has_friction
    use exit_codes, only: EXIT_FREE_BODY
    use faults, only: fault_t, raise
-   use generalised_alpha, only: DYNAMIC
+   use generalised_alpha, only: has_inertia
    use model_types, only: model_t
    use scene_types, only: acts_in, stage_t
    use texts, only: short, whole
@@ -31,11 +31,11 @@ contains
       logical, allocatable :: touched(:)
       integer :: s, b, i, motion
 
-      if (.not. any(model%stages%kind /= DYNAMIC)) return
+      if (.not. any(.not. has_inertia(model%stages%kind))) return
       body_of = bodies_of(model)
       do s = 1, size(model%stages)
          associate (stage => model%stages(s))
-            if (stage%kind == DYNAMIC) cycle
+            if (has_inertia(stage%kind)) cycle
             touched = in_contact(model, stage)
             do b = 1, size(body_of)
                ! The first node of a body stands for it; one without an element has no stiffness, and no equation.
@@ -96,7 +96,7 @@ contains
       logical :: touched(size(model%domain%mesh%x, 2))
 
       text = ''
-      if (stage%kind == DYNAMIC) return
+      if (has_inertia(stage%kind)) return
       body_of = bodies_of(model)
       touched = in_contact(model, stage)
       do b = 1, size(body_of)

@@ -3,7 +3,7 @@
 module stage_builder
    use kinds, only: wp
    use convergence, only: measure_in
-   use generalised_alpha, only: QUASI_STATIC, DYNAMIC
+   use generalised_alpha, only: has_inertia, is_flow
    use model_types, only: model_t
    use scene_types, only: acts_in
    implicit none (type, external)
@@ -27,13 +27,13 @@ contains
             do k = 1, size(model%contacts)
                touching = touching .or. acts_in(model%contacts(k)%stages, stage%name)
             end do
-            stage%measure = measure_in(stage%measure, stage%kind, touching)
+            stage%measure = measure_in(stage%measure, has_inertia(stage%kind), touching)
             if (stage%rho_inf >= 0.0_wp) cycle
             stage%rho_inf = SMOOTH
-            if (stage%kind == DYNAMIC .and. touching) stage%rho_inf = OPENING
+            if (has_inertia(stage%kind) .and. touching) stage%rho_inf = OPENING
             ! What the steps of a flow do not resolve, and forces that nothing balances at its start, are to go at once:
             ! with rho_inf they fade as rho_inf to the power of the steps.
-            if (stage%kind == QUASI_STATIC) stage%rho_inf = OPENING
+            if (is_flow(stage%kind)) stage%rho_inf = OPENING
          end associate
       end do
    end subroutine choose_schemes

@@ -3,7 +3,7 @@
 !> over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
-   use generalised_alpha, only: STATIC, DYNAMIC
+   use generalised_alpha, only: has_rates, has_inertia
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
    use warnings, only: add_warning, WARNING_LENGTH
@@ -49,12 +49,13 @@ contains
       integer :: i
 
       if (.not. balance%matters) return
-      if (model%stages(1)%kind == STATIC .and. .not. any(model%initials%geostatic .or. model%initials%uniform)) return
+      if (.not. has_rates(model%stages(1)%kind) .and. &
+          .not. any(model%initials%geostatic .or. model%initials%uniform)) return
       share = ', where there is no stress'
       if (balance%there > 0.0_wp) share = ', '//short(100*balance%stress/balance%there)//' % of the stress there'
       why = ''
       i = findloc(model%actions%damps, .true., dim=1)
-      if (model%stages(1)%kind == DYNAMIC .and. i > 0) why = ' The dashpots of '//trim(model%actions(i)%what)// &
+      if (has_inertia(model%stages(1)%kind) .and. i > 0) why = ' The dashpots of '//trim(model%actions(i)%what)// &
          ' hold no weight: find the balance in a static stage with a &fix that is limited to it.'
       call add_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
                        short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
@@ -120,7 +121,7 @@ contains
          associate (fix => model%fixes(i), edges => model%domain%mesh%groups(model%fixes(i)%group)%edges)
             if (fix%field /= AT_P_W .or. fix%hold) cycle
             do s = 1, size(model%stages)
-               if (model%stages(s)%kind == STATIC .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
+               if (.not. has_rates(model%stages(s)%kind) .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
                call find_carried(model, s, carried, pressed)
                bare = 0
                most = 0.0_wp
@@ -197,11 +198,11 @@ contains
       associate (h => model%amplitudes(fix%amplitude))
          do s = 1, size(model%stages)
             if (s > 1) start = start + model%stages(s - 1)%duration
-            if (model%stages(s)%kind /= DYNAMIC .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
+            if (.not. has_inertia(model%stages(s)%kind) .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
             after = fix%value*slope_after(h, max(start, fix%from))
             before = 0.0_wp
             if (s > 1 .and. fix%from <= start) then
-               if (model%stages(s - 1)%kind == DYNAMIC .and. acts_in(fix%stages, model%stages(s - 1)%name)) cycle
+               if (has_inertia(model%stages(s - 1)%kind) .and. acts_in(fix%stages, model%stages(s - 1)%name)) cycle
             end if
             if (s == 1 .and. fix%field == AT_U_Z) then
                do i = 1, size(model%initials)
@@ -307,7 +308,7 @@ contains
          real(wp) :: start
          integer :: s
 
-         s = findloc(model%stages%kind, DYNAMIC, dim=1)
+         s = findloc(has_inertia(model%stages%kind), .true., dim=1)
          if (amplitude == 0 .or. s < 2) return
          if (.not. acts_in(stages, model%stages(s)%name)) return
          start = sum(model%stages(:s - 1)%duration)

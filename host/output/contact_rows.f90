@@ -36,7 +36,7 @@ contains
       end do
    end function contact_columns
 
-   !> Its row after a step: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
+   !> Row of contact.csv: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
    !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every plate u_z [m], v_z
    !> [m/s], a_z [m/s2], load [kN], and of one that moves in the plane the same along r and of its rotation, from r to
    !> z: angle [-], [1/s], [1/s2], moment [kN m].

@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What effects that a run does not have would act on: columns of ledger.csv. A few sums over nodes and points; nothing
+!> Indicators of effects that a run does not have: columns of ledger.csv. A few sums over nodes and points; nothing
 !> is asked of the material. docs/theory/host.md section 11.
 module effect_indicators
    use kinds, only: wp
@@ -25,7 +25,7 @@ contains
       end do
    end function indicator_columns
 
-   !> Of a step: the speed that inertia would act on, root of twice the kinetic energy [kJ**(1/2)]; the largest
+   !> Indicators of a step: the speed that inertia acts on, root of twice the kinetic energy [kJ**(1/2)]; the largest
    !> acceleration of a node [m/s2], for that of the skeleton in Darcy's law; the largest tension of the water [kPa],
    !> for suction; the inverse of the least mean effective stress of a material that yields [1/kPa], for gravity; of
    !> every region the largest rate of volume [1/s], for flow. 0 where there is none.

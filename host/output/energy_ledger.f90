@@ -36,7 +36,7 @@ module energy_ledger
       real(wp) :: damping = 0.0_wp    !< Dissipated by damping and viscosity of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures, less rain: both, air [m3].
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
-      real(wp) :: open_0 = 0.0_wp       !< What the balance left open where the present stage began [kJ].
+      real(wp) :: open_0 = 0.0_wp       !< Imbalance where the present stage began [kJ].
       real(wp) :: most_created = 0.0_wp !< Largest energy that a dynamic stage has created, so far [kJ].
       real(wp) :: overdue = 0.0_wp      !< Steps in a row, to the last, with more created energy than the stage allows.
       !> Most that residuals within Newton's tolerance can have done: in all steps before a work exceeds it, then in one
@@ -105,7 +105,7 @@ contains
    pure function damping_in(region, scheme, increment) result(stress)
       type(region_t), intent(in) :: region
       type(scheme_t), intent(in) :: scheme
-      real(wp), intent(in) :: increment(4)   !< Of the effective stress [kPa].
+      real(wp), intent(in) :: increment(4)   !< Increment of the effective stress [kPa].
       real(wp) :: stress(4)
 
       stress = region%stiffness_damping/scheme%dt*increment
@@ -209,7 +209,7 @@ contains
       ledger%outflow_air = ledger%outflow_air + scheme%dt*mean(2)
    end subroutine book_outflow
 
-   !> What moves an element as a step does, inertia included [kJ].
+   !> Work that moves an element as a step does, inertia included [kJ].
    real(wp) function work_to_move_element(domain, e, scheme, old, new, damping_stress, du) result(total)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
@@ -272,7 +272,7 @@ contains
       end do
    end subroutine add_work_of_element
 
-   !> What seepage dissipates in an element.
+   !> Energy that seepage dissipates in an element.
    subroutine book_seepage(domain, e, scheme, old, new, ledger)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
@@ -338,7 +338,7 @@ contains
       real(wp), intent(in) :: tolerance      !< Newton's: a residual may be that share of the forces.
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: scale(:)       !< Sum of the magnitudes of the forces on every unknown [kN]. (unknowns)
-      real(wp), intent(in) :: change(:, :)   !< Of the unknowns in the step; displacements first [m]. (FIELDS, nodes)
+      real(wp), intent(in) :: change(:, :)   !< Change of the unknowns; displacements first [m]. (FIELDS, nodes)
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: work
       integer :: i
@@ -377,7 +377,7 @@ contains
       allowed_creation = share*ledger%largest_work + ledger%tolerated
    end function allowed_creation
 
-   !> What the mechanical balance leaves open [kJ]. docs/theory/host.md section 9; positive: energy is lost.
+   !> Energy that the mechanical balance leaves open [kJ]. docs/theory/host.md section 9; positive: energy is lost.
    pure real(wp) function imbalance(ledger)
       type(ledger_t), intent(in) :: ledger
 

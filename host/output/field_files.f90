@@ -19,7 +19,7 @@ module field_files
    public :: field_observer_t, check_mesh, all_pressures
 
    type, extends(observer_t) :: field_observer_t
-      real(wp), allocatable :: times(:)   !< Of the fields written so far [s].
+      real(wp), allocatable :: times(:)   !< Times of the fields written so far [s].
    contains
       procedure :: exchange
       procedure :: begins
@@ -184,7 +184,7 @@ contains
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
       type(state_t), intent(in) :: state
-      real(wp), allocatable, intent(inout) :: times(:)   !< Of the fields so far, this one added [s].
+      real(wp), allocatable, intent(inout) :: times(:)   !< Times of the fields so far, this one added [s].
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       real(wp) :: x(FIELDS, size(state%x, 2)), cells(8, size(domain%mesh%t6, 2))

@@ -12,7 +12,7 @@ module folder_lock
 
    character(*), parameter :: LOCK = 'running'
    integer, parameter :: ATTEMPTS = 2   !< The second after the file of a dead process is removed.
-   integer, parameter :: NAME_LENGTH = 256   !< Of a host.
+   integer, parameter :: NAME_LENGTH = 256   !< Longest name of a host.
 
    interface
       integer(c_int) function getpid() bind(c)
@@ -88,7 +88,7 @@ contains
       if (from_c(name) /= '') host = trim(from_c(name))
    end function this_host
 
-   !> What the file says. status: 0; below 0 where it says nothing, as that of a process that was killed while it wrote;
+   !> Reads the file. status: 0; below 0 where it says nothing, as that of a process that was killed while it wrote;
    !> above 0 where it cannot be read.
    subroutine read_lock(folder, owner, host, status)
       character(*), intent(in) :: folder

@@ -41,7 +41,7 @@ module ledger_observer
       type(ledger_t) :: ledger
       !> (4, points) Stress of the damping in proportion to the stiffness; allocated where a region has it [kPa].
       real(wp), allocatable :: damping_stress(:, :)
-      real(wp), allocatable :: indicators(:)   !< Of the last step.
+      real(wp), allocatable :: indicators(:)   !< Indicators of the last step.
    contains
       procedure :: exchange
       procedure :: fits

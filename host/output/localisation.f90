@@ -26,11 +26,11 @@ module localisation
    !> Works since displacements began to count.
    type, extends(observer_t) :: localisation_observer_t
       real(wp) :: shear = 0.0_wp          !< Positive work of the points on deviators [kJ].
-      real(wp) :: localised = 0.0_wp      !< Of it, by points whose tangent had lost ellipticity [kJ].
-      real(wp), allocatable :: work(:)    !< (points) The same of every point [kJ].
+      real(wp) :: localised = 0.0_wp      !< Part of it by points whose tangent had lost ellipticity [kJ].
+      real(wp), allocatable :: work(:)    !< (points) Such work of every point [kJ].
       real(wp) :: since = 0.0_wp          !< When the share first was above TOLD_SHARE [s].
-      logical :: is_above = .false.       !< It has been.
-      real(wp) :: normal = 0.0_wp         !< Of the band at the point with the most of that work, from r towards z.
+      logical :: is_above = .false.       !< The share has been above it.
+      real(wp) :: normal = 0.0_wp         !< Angle of the normal where most of that work is done, from r towards z.
       logical :: told = .false.
    contains
       procedure :: exchange
@@ -142,7 +142,7 @@ contains
    subroutine tell(self, domain, stage, time, share, worst)
       type(localisation_observer_t), intent(in) :: self
       type(domain_t), intent(in) :: domain
-      character(*), intent(in) :: stage   !< Its name.
+      character(*), intent(in) :: stage   !< Name of the stage.
       real(wp), intent(in) :: time, share   !< [s], [-]
       integer, intent(in) :: worst   !< Point with the most work.
 

@@ -28,7 +28,7 @@ module output_tables
    type, extends(observer_t) :: table_observer_t
       type(csv_t) :: history
       type(csv_t) :: contact     !< It is open if the scene has contacts or plates.
-      type(csv_t) :: reactions   !< Of the stage under way, if it prescribes or loads anything.
+      type(csv_t) :: reactions   !< Table of the stage under way, if it prescribes or loads anything.
    contains
       procedure :: exchange
       procedure :: fits
@@ -216,7 +216,7 @@ contains
    subroutine write_fields(folder, domain, stage, state, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
-      character(*), intent(in) :: stage   !< Its name.
+      character(*), intent(in) :: stage   !< Name of the stage.
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS, size(state%x, 2))
@@ -273,7 +273,7 @@ contains
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
       type(contacts_t), intent(in) :: contacts
-      character(*), intent(in) :: stage   !< Its name.
+      character(*), intent(in) :: stage   !< Name of the stage.
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: values(:, :)

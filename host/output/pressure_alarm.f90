@@ -34,7 +34,7 @@ module pressure_alarm
    end type lines_t
 
    type, extends(observer_t) :: pressure_alarm_t
-      type(lines_t) :: lines   !< Of the mesh; found when they are asked for first.
+      type(lines_t) :: lines   !< Lines of the mesh; found when they are asked for first.
       logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false., told_dry = .false.
    contains
       procedure :: step
@@ -61,7 +61,7 @@ contains
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(state_t), intent(in) :: state
-      type(lines_t), intent(inout) :: lines   !< Of the mesh; found when they are asked for first.
+      type(lines_t), intent(inout) :: lines   !< Lines of the mesh; found when they are asked for first.
       logical, intent(inout) :: told
       real(wp) :: share
       logical :: counts(size(model%domain%mesh%x, 2))
@@ -157,7 +157,7 @@ contains
       real(wp), intent(in) :: x(:, :)     !< (2, nodes) [m]
       integer, intent(in) :: t6(:, :)     !< (6, elements)
       type(lines_t) :: lines
-      integer, allocatable :: first(:), sides(:, :)   !< Of every node its sides: (middle, end; sides of all nodes).
+      integer, allocatable :: first(:), sides(:, :)   !< Sides of every node: (middle, end; sides of all nodes).
       logical :: known(size(x, 2))
       real(wp) :: one(2), other(2)
       integer :: pass, c, i, j, n

@@ -37,7 +37,7 @@ contains
          head = head//','//quoted(trim(name_of(list(1, i)))//'.'//trim(SUFFIX(list(2, i))))
       end do
    contains
-      !> Of a group, or of the plate that it turns.
+      !> Name of a group, or of the plate that it turns.
       function name_of(group) result(name)
          integer, intent(in) :: group
          character(:), allocatable :: name

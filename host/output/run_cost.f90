@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What a run costs: unknowns of every field, the memory of its largest lists, and the time of its parts.
+!> Cost of a run: unknowns of every field, the memory of its largest lists, and the time of its parts.
 module run_cost
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp

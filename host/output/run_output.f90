@@ -22,9 +22,9 @@ contains
    !> Lists the observers of a run in the order in which they are told. Localisation stands before the ledger, and this
    !> before the tables, which take a column from it, the checkpoint behind all that it keeps.
    subroutine list_observers(folder, quiet, verbose, started, observers)
-      character(*), intent(in) :: folder   !< Of the results.
+      character(*), intent(in) :: folder   !< Folder of the results.
       logical, intent(in) :: quiet         !< Errors and warnings only are printed.
-      logical, intent(in) :: verbose       !< What the run has cost is printed.
+      logical, intent(in) :: verbose       !< Memory, times and counters are printed.
       real(wp), intent(in) :: started      !< When the program began, on the wall clock [s].
       type(observers_t), intent(out) :: observers
 

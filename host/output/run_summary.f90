@@ -22,9 +22,9 @@ module run_summary
    private
    public :: summary_observer_t
 
-   integer, parameter :: DIGITS_SAID = 3   !< Of a value; of a time as many as tell it from that of the step before.
+   integer, parameter :: DIGITS_SAID = 3   !< Digits of a value; a time has as many as tell it from the step before.
 
-   real(wp), parameter :: NOISE = 1.0e-10_wp   !< Of the largest displacement or pressure: rounding.
+   real(wp), parameter :: NOISE = 1.0e-10_wp   !< Share of the largest displacement or pressure that is rounding.
 
    !> Largest magnitudes of the unknowns at the named points so far, with their signs, when, and the step to it.
    type :: peaks_t
@@ -32,9 +32,9 @@ module run_summary
    end type peaks_t
    type, extends(observer_t) :: summary_observer_t
       logical :: quiet = .false.         !< Nothing is said of the answers.
-      logical :: verbose = .false.       !< What the run has cost is said.
+      logical :: verbose = .false.       !< Memory, times and counters are printed.
       real(wp) :: started = 0.0_wp       !< When the program began, on the wall clock [s].
-      type(peaks_t) :: peaks             !< Of the named points.
+      type(peaks_t) :: peaks             !< Peaks at the named points.
    contains
       procedure :: exchange
       procedure :: begins

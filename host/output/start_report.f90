@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What is said of a run before it begins: its size and stages, how far its start is from balance, what of the scene may
+!> Sentences before a run begins: its size and stages, how far its start is from balance, what of the scene may
 !> not be meant, and where a checkpoint would take it up.
 module start_report
    use, intrinsic :: iso_fortran_env, only: output_unit
@@ -24,7 +24,7 @@ contains
    subroutine report_start(scene, model, run, quiet, verbose, only_check)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
-      type(run_t), intent(inout) :: run   !< Its contacts are probed.
+      type(run_t), intent(inout) :: run   !< The contacts are probed.
       logical, intent(in) :: quiet, verbose, only_check
       character(WARNING_LENGTH), allocatable :: doubts(:)
       type(balance_t) :: balance

@@ -29,7 +29,7 @@ module water_balance
    !> Sums of the stage under way.
    type :: water_t
       real(wp) :: gained = 0.0_wp     !< Water that the pores took up by their volume, saturation and pressure [m3].
-      real(wp) :: turned = 0.0_wp     !< The same with all parts by magnitude [m3].
+      real(wp) :: turned = 0.0_wp     !< Sum with all parts by magnitude [m3].
       real(wp) :: received = 0.0_wp   !< Water through loads, less what dashpots let out [m3].
       real(wp) :: left = 0.0_wp       !< Water through prescribed pressures, less the rain [m3].
       real(wp) :: moved = 0.0_wp      !< Water through boundaries, in and out [m3].

@@ -12,7 +12,7 @@ module contact_landings
    private
    public :: closed_contacts, ends_at_closing, end_where_it_closes
 
-   integer, parameter :: BISECTIONS = 40     !< Of the time at which a contact closes: 1e-12 of the step.
+   integer, parameter :: BISECTIONS = 40     !< Bisections of the time at which a contact closes: 1e-12 of the step.
    !> A closing nearer than this share of the step that the error asks for is not landed on: the step may hold it.
    real(wp), parameter :: NEAREST = 0.015_wp
 contains
@@ -37,7 +37,7 @@ contains
    !> attempt does.
    logical function ends_at_closing(stage, dt, run) result(ends)
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt   !< That was tried [s].
+      real(wp), intent(in) :: dt   !< Step that was tried [s].
       type(run_t), intent(inout) :: run
 
       associate (c => run%control)
@@ -54,7 +54,7 @@ contains
    !> for along the motion that keeps its accelerations: exact for bodies in free flight. Where that motion closes none
    !> the step stays as its error asks for.
    subroutine end_where_it_closes(dt, run)
-      real(wp), intent(in) :: dt   !< That was tried [s].
+      real(wp), intent(in) :: dt   !< Step that was tried [s].
       type(run_t), intent(inout) :: run
       real(wp) :: open, shut, middle
       integer :: i

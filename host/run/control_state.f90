@@ -1,5 +1,5 @@
 ! SPDX-License-Identifier: MIT
-!> What the control of the time step carries from one step to the next, and what it has seen so far.
+!> Control of the time step: its memory from one step to the next, and what it has seen so far.
 module control_state
    use archive, only: archive_t
    use kinds, only: wp
@@ -11,7 +11,7 @@ module control_state
    public :: control_state_t, new_control_state, exchange_control
    public :: LIMITS, LIMIT_NAMES, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
 
-   !> What kept a step from being longer: the first three in the order of the fields.
+   !> Limits that keep a step from being longer: the first three in the order of the fields.
    integer, parameter :: LIMITS = 7, BY_TIMES = 4, BY_LARGEST = 5, BY_SMALLEST = 6, BY_GROWTH = 7
    character(30), parameter :: LIMIT_NAMES(LIMITS) = [character(30) :: 'error of the displacements', 'error of p_w', &
       'error of p_c', 'times that steps end at', 'dt_max', 'smallest step', 'growth of the step']
@@ -23,7 +23,7 @@ module control_state
       integer :: fresh = 0                       !< Accepted steps since then.
       real(wp) :: start_up = 0.0_wp              !< Span in which changes are expected to grow yet [s].
       integer :: rejected = 0                    !< Steps repeated because of their error, in the whole run.
-      real(wp) :: error = 0.0_wp                 !< Of the last controlled step, share of the change of its field [-].
+      real(wp) :: error = 0.0_wp                 !< Error of the last controlled step over the change of its field [-].
       real(wp) :: scale(FIELDS) = 0.0_wp         !< Largest change of the fields in the run [m, kPa].
       real(wp) :: limits(LIMITS) = 0.0_wp        !< Steps by what kept them short.
       logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.

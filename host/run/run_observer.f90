@@ -20,7 +20,7 @@ module run_observer
       integer :: stage = 0                 !< Number of the stage.
       type(scheme_t) :: scheme             !< It has the length of the step.
       type(control_t) :: control           !< Limits of Newton's method in it.
-      type(log_t) :: log                   !< What Newton's method did.
+      type(log_t) :: log                   !< Log of Newton's method.
       real(wp) :: error = 0.0_wp           !< Estimate of a controlled step's own, share of the change of its field [-].
       logical :: last = .false.            !< The stage ends with it.
       real(wp) :: localised = 0.0_wp       !< Share of the shear work without ellipticity [-], set by its observer.
@@ -29,7 +29,7 @@ module run_observer
 
    !> All procedures do nothing unless an observer has its own. A fault ends the run.
    type, abstract :: observer_t
-      character(:), allocatable :: folder   !< Of the results; not allocated: no file is written.
+      character(:), allocatable :: folder   !< Folder of the results; not allocated: no file is written.
    contains
       procedure :: exchange       !< With a checkpoint.
       procedure :: fits           !< Before a restart; changes nothing, and refuses what its files do not fit.
@@ -49,7 +49,7 @@ module run_observer
 
    !> The list of observers, which are told in its order.
    type :: observers_t
-      character(:), allocatable :: folder   !< Of the results, for observers that are added.
+      character(:), allocatable :: folder   !< Folder of the results, for observers that are added.
       type(slot_t), allocatable :: list(:)
    contains
       procedure :: add
@@ -100,7 +100,7 @@ contains
       class(observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      integer, intent(in) :: number   !< Of the stage.
+      integer, intent(in) :: number   !< Number of the stage.
 
       associate (unused => self, nor => model, neither => run, never => number)
       end associate
@@ -238,7 +238,7 @@ contains
       class(observers_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      integer, intent(in) :: number   !< Of the stage.
+      integer, intent(in) :: number   !< Number of the stage.
       integer :: i
 
       do i = 1, size(self%list)

@@ -16,11 +16,11 @@ module run_state
    public :: run_t, exchange_run
 
    type, extends(solution_t) :: run_t
-      type(term_box_t), allocatable :: terms(:)   !< Those of the model, with what they keep from step to step.
-      type(tension_t) :: tension               !< Of the initial state, for a warning.
-      type(control_state_t) :: control         !< Of the time step, in stages that choose it.
+      type(term_box_t), allocatable :: terms(:)   !< Terms of the model, with what they keep from step to step.
+      type(tension_t) :: tension               !< Tension in the initial state, for a warning.
+      type(control_state_t) :: control         !< Control of the time step, in stages that choose it.
       integer :: steps = 0, iterations = 0, cuts = 0
-      integer(int64) :: rate_evaluations = 0   !< Of the material.
+      integer(int64) :: rate_evaluations = 0   !< Rate evaluations of the material.
       real(wp) :: dissipated = 0.0_wp          !< Energy that terms dissipated in the last accepted step [kJ].
       real(wp) :: seconds_output = 0.0_wp      !< Wall time of the observers.
    end type run_t

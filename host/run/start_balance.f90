@@ -18,7 +18,7 @@ module start_balance
    public :: find_imbalance
 
    real(wp), parameter :: NOTABLE = 0.1_wp    !< Share of the stress around a node that is an imbalance.
-   real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of the forces of the elements at a node.
+   real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Share of the forces of the elements at a node.
    real(wp), parameter :: SMALL = 0.01_wp     !< Share of the largest stress of the ground that is none.
 contains
    !> The largest unbalanced stress of a prepared run; not known where a material or contact refuses the start. Of the

@@ -8,7 +8,7 @@ module step_attempt
    use boundary_loads, only: load_at
    use convergence, only: control_t, log_t
    use free_bodies, only: bodies_on_contact
-   use generalised_alpha, only: scheme_t, make_scheme, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t, make_scheme, has_rates, has_inertia
    use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
@@ -23,7 +23,7 @@ module step_attempt
    public :: begin_stage, resume_stage, try_step
 
    integer, parameter :: CUTS_IN_VAIN = 2   !< At the start of a static stage, until what acts at once is spread.
-   real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Of the numbers at the present time: its rounding.
+   real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Spacings of numbers at the present time: its rounding.
 contains
    !> Sets a run at the start of stage `number`: terms, prescribed values, control of the steps, first accelerations.
    !> docs/theory/host.md section 4.1. Faults: those of set_step and, for the accelerations, explain_failure.
@@ -42,7 +42,7 @@ contains
          call set_step(model, stage, 0.0_wp, run, fault)
          if (fault%code /= 0) return
          call begin_control(model, stage, run)
-         if (stage%kind == DYNAMIC .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
+         if (has_inertia(stage%kind) .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
       end associate
    end subroutine begin_stage
 
@@ -131,7 +131,8 @@ contains
             call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
             return
          end if
-         if (stage%kind == STATIC .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) call spread_sudden_loads(model, run)
+         if (.not. has_rates(stage%kind) .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) &
+            call spread_sudden_loads(model, run)
          ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
          at%factor = at%factor*share
          call shorten_step(stage, dt, run)

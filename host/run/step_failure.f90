@@ -18,7 +18,7 @@ module step_failure
    private
    public :: explain_failure, explain_short_step, LEAST_OF_STAGE
 
-   real(wp), parameter :: LEAST_OF_STAGE = 1.0e-12_wp   !< Of the duration of the stage: shorter steps are a crawl.
+   real(wp), parameter :: LEAST_OF_STAGE = 1.0e-12_wp   !< Share of the stage: shorter steps are a crawl.
 contains
    !> Raises the fault of a step that failed: exit code, place, cause and remedy. Fault EXIT_MATERIAL, EXIT_CONVERGENCE
    !> (also of contacts), EXIT_FREE_BODY or EXIT_SOLVER, by log%outcome.
@@ -78,7 +78,7 @@ contains
       end associate
    end subroutine explain_failure
 
-   !> What helps where Newton's method does not converge: where shorter attempts have failed as well, none of them.
+   !> Advice where Newton's method does not converge: where shorter attempts have failed as well, none of them.
    function advice(stage, run) result(text)
       type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run
@@ -91,7 +91,7 @@ contains
       text = text//'a better tangent (tangent of the material) or a larger tolerance.'
    end function advice
 
-   !> What the terms of the scene may have to do with it.
+   !> Remarks of the terms of the scene on a failure.
    function remarks(model, terms, time) result(text)
       type(model_t), intent(in) :: model
       type(term_box_t), intent(in) :: terms(:)
@@ -105,7 +105,7 @@ contains
       end do
    end function remarks
 
-   !> That soil began without stress, where it did: the likely cause of a failure.
+   !> Remark that soil began without stress, where it did: the likely cause of a failure.
    function unstressed(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
@@ -133,7 +133,8 @@ contains
                  cause)
    end subroutine explain_short_step
 
-   !> How many points were given the elastic stiffness in the last pass, and where most of them are; nothing if none.
+   !> Remark on how many points were given the elastic stiffness in the last pass, and where most of them are; nothing
+   !> if none.
    function soft_points(model, run) result(text)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run

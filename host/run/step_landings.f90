@@ -20,7 +20,7 @@ module step_landings
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
-   real(wp), parameter :: CHORD_SHARE = 0.1_wp    !< Of the accuracy that a straight line may leave out of a history.
+   real(wp), parameter :: CHORD_SHARE = 0.1_wp    !< Share of the accuracy that a straight line may leave out.
    real(wp), parameter :: SAME = 1.0e-9_wp        !< Relative difference that is none.
 contains
    !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
@@ -84,7 +84,7 @@ contains
       type(amplitude_t), intent(in) :: amplitude
       real(wp), intent(in) :: now, close   !< Breaks nearer than `close` are the present time [s].
       real(wp), intent(in) :: horizon      !< [s]
-      real(wp), intent(in) :: share        !< Of the range [-].
+      real(wp), intent(in) :: share        !< Share of the range [-].
       real(wp) :: line_end, start, slope, missed, most, allowed
       integer :: first, last, k, worst
 

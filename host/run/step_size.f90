@@ -28,8 +28,8 @@ module step_size
    real(wp), parameter :: FIRST_STATIC = 0.05_wp  !< Largest share of the span that a first static step takes.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
-   real(wp), parameter :: PLATE_SHARE = 0.01_wp   !< Of the way of a plate: what it does to the ground is not less.
-   real(wp), parameter :: NEWTON_SHARE = 0.1_wp   !< Of the error of a step, left to Newton's method.
+   real(wp), parameter :: PLATE_SHARE = 0.01_wp   !< Share of the way of a plate that moves the ground at least.
+   real(wp), parameter :: NEWTON_SHARE = 0.1_wp   !< Share of the error of a step that is left to Newton's method.
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
 contains
    !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
@@ -247,12 +247,12 @@ contains
       end associate
    end subroutine estimate_error
 
-   !> Of the changes in the second of two equal steps since a sudden change: those of a flow that begins with the root
+   !> Changes in the second of two equal steps since a sudden change: those of a flow that begins with the root
    !> of time. Of such a flow the steps change by D and (sqrt(2) - 1) D, so that the rate falls in the second by sqrt(2)
    !> times what it adds. What goes on as in the first step, as under a load that begins to grow, is none.
    !> docs/theory/host.md section 4.5.
    pure function begun_with_root(dt, run) result(change)
-      real(wp), intent(in) :: dt   !< Of the second step [s].
+      real(wp), intent(in) :: dt   !< Length of the second step [s].
       type(run_t), intent(in) :: run
       real(wp) :: change(FIELDS, size(run%state%x, 2))   !< [m, kPa]
       real(wp) :: norms(FIELDS), turns(FIELDS)

@@ -13,7 +13,7 @@ module effect_switches
    use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, LOAD_WATER, LOAD_RAIN, &
                           LOAD_AIR
    use texts, only: lower_case, read_number
-   use generalised_alpha, only: QUASI_STATIC, DYNAMIC
+   use generalised_alpha, only: QUASI_STATIC, has_inertia
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -32,7 +32,7 @@ contains
       present = .false.
       select case (effect)
       case (OF_INERTIA)
-         present = any(scene%stages%kind == DYNAMIC)
+         present = any(has_inertia(scene%stages%kind))
       case (OF_SEEPAGE)
          present = scene%seepage_inertia
       case (OF_P_W)
@@ -87,7 +87,7 @@ contains
       why = ''
       select case (effect)
       case (OF_INERTIA)
-         where (scene%stages%kind == DYNAMIC) scene%stages%kind = QUASI_STATIC
+         where (has_inertia(scene%stages%kind)) scene%stages%kind = QUASI_STATIC
          scene%seepage_inertia = .false.
       case (OF_SEEPAGE)
          scene%seepage_inertia = .false.

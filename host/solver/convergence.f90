@@ -11,7 +11,6 @@ module convergence
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
-   use generalised_alpha, only: DYNAMIC
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -80,20 +79,20 @@ module convergence
    end type log_t
 contains
    !> The measure of a stage: what BY_STAGE stands for. docs/theory/host.md section 5.1.
-   pure integer function measure_in(given, kind, touching) result(measure)
+   pure integer function measure_in(given, inertia, touching) result(measure)
       integer, intent(in) :: given      !< BY_...
-      integer, intent(in) :: kind       !< STATIC, QUASI_STATIC, DYNAMIC
+      logical, intent(in) :: inertia    !< The stage has accelerations.
       logical, intent(in) :: touching   !< Whether it has contacts.
 
       measure = given
-      if (given == BY_STAGE) measure = merge(BY_FORCES, BY_CHANGE, kind == DYNAMIC .and. touching)
+      if (given == BY_STAGE) measure = merge(BY_FORCES, BY_CHANGE, inertia .and. touching)
    end function measure_in
 
    !> Share of all forces below which no tolerance of a change asks for more. [-] docs/theory/host.md section 5.1.
-   pure real(wp) function rounding_in(kind) result(share)
-      integer, intent(in) :: kind   !< STATIC, QUASI_STATIC, DYNAMIC
+   pure real(wp) function rounding_in(inertia) result(share)
+      logical, intent(in) :: inertia   !< The step has accelerations.
 
-      share = merge(ROUNDING_OF_INERTIA, ROUNDING_OF_SUMS, kind == DYNAMIC)
+      share = merge(ROUNDING_OF_INERTIA, ROUNDING_OF_SUMS, inertia)
    end function rounding_in
 
    !> Errors of the fields that the linear solution may leave; 0 where another measure counts: as little as it can. [-]
@@ -244,7 +243,8 @@ contains
       end do
    end function has_water
 
-   !> Magnitude that the residual of the water is small against [m3/s]. A flow of air that is much larger has no part in it.
+   !> Magnitude that the residual of the water is small against [m3/s]. A flow of air that is much larger has no part in
+   !> it.
    !> docs/theory/host.md section 5.1.
    pure real(wp) function water_scale(dofs, constraint, assembly, largest) result(scale)
       type(dofs_t), intent(in) :: dofs

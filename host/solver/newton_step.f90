@@ -15,7 +15,7 @@ module newton_step
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
-   use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC, DYNAMIC
+   use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
@@ -241,7 +241,7 @@ contains
          if (log%iterations == 1) then
             log%first_error = log%error
             at%norm_0 = max(at%norm_0, norm)
-            log%balanced = at%norm_0 <= rounding_in(scheme%kind)*norm2(assembly%scale)
+            log%balanced = at%norm_0 <= rounding_in(scheme%has_inertia)*norm2(assembly%scale)
             at%begun = max(at%norm_0, ROUNDING*norm2(assembly%scale))
          end if
          log%reduction = norm/max(at%begun, tiny(1.0_wp))
@@ -273,7 +273,7 @@ contains
       type(iterate_t), intent(inout) :: at
 
       associate (system => solution%system, constraint => solution%constraint, assembly => solution%assembly)
-         system%rounding = rounding_in(scheme%kind)/control%tolerance*asked_for(dofs, at%rhs)
+         system%rounding = rounding_in(scheme%has_inertia)/control%tolerance*asked_for(dofs, at%rhs)
          system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
             rounding_of_saturation(domain, dofs, constraint, solution%state, scheme)/control%tolerance)
          at%rounded = rounding_of_unknowns(dofs, solution%pattern, constraint, assembly%values, solution%next%x)
@@ -325,7 +325,7 @@ contains
 
       assembly%air = constraint%air
       assembly%with_change = control%measure == BY_CHANGE
-      assembly%rounding_share = merge(rounding_in(scheme%kind)/control%tolerance, 0.0_wp, assembly%with_change)
+      assembly%rounding_share = merge(rounding_in(scheme%has_inertia)/control%tolerance, 0.0_wp, assembly%with_change)
       assembly%fallback = NO_FALLBACK
       call follow_slopes_first(assembly)
    end subroutine begin_passes
@@ -342,7 +342,7 @@ contains
       integer :: e, g, i, p, at, n_p
 
       rounding = 0.0_wp
-      if (.not. domain%with_c .or. scheme%kind == STATIC) return
+      if (.not. domain%with_c .or. .not. scheme%has_rates) return
       pores = 0.0_wp
       do e = 1, size(domain%mesh%t6, 2)
          n_p = domain%n_carriers(e)
@@ -452,8 +452,8 @@ contains
       associate (state => solution%state, work => solution%next, pattern => solution%pattern, &
                  constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
          ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
-         scheme = scheme_t(kind=DYNAMIC, has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, &
-                           l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
+         scheme = scheme_t(has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, &
+                           c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
          held = constraint
          held%fixed = constraint%fixed .or. dofs%field > DISPLACEMENTS
          held%target = 0.0_wp

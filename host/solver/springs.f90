@@ -5,7 +5,7 @@ module springs
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
-   use generalised_alpha, only: scheme_t, DYNAMIC
+   use generalised_alpha, only: scheme_t
    use porous_domain, only: state_t
    use sparsity_pattern, only: pattern_t, place_of
    implicit none (type, external)
@@ -50,7 +50,7 @@ contains
             if (assembly%with_change) assembly%change(ends) = assembly%change(ends) + abs(force - before)
             if (.not. slopes .or. .not. (abs(force) > 0.0_wp .or. one%pulls)) cycle
             slope = one%stiffness*scheme%l_f
-            if (scheme%kind == DYNAMIC) slope = slope + one%damping*scheme%c_v
+            if (scheme%has_inertia) slope = slope + one%damping*scheme%c_v
             do a = 1, 2
                do b = 1, 2
                   associate (value => assembly%values(place_of(pattern, ends(a), ends(b))))
@@ -108,7 +108,7 @@ contains
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: u, v   !< At the start of the step [m, m/s].
 
-      may_push = one%pulls .or. .not. one%damping > 0.0_wp .or. scheme%kind /= DYNAMIC .or. u > 0.0_wp
+      may_push = one%pulls .or. .not. one%damping > 0.0_wp .or. .not. scheme%has_inertia .or. u > 0.0_wp
       ! The accelerations of a start belong to no step.
       if (.not. may_push .and. scheme%l_f > 0.0_wp) may_push = u + scheme%dt*v > 0.0_wp
    end function may_push
@@ -130,7 +130,7 @@ contains
       real(wp), intent(in) :: u, v   !< [m, m/s]
 
       force = one%stiffness*u
-      if (scheme%kind == DYNAMIC) force = force + one%damping*v
+      if (scheme%has_inertia) force = force + one%damping*v
       if (.not. one%pulls) force = max(0.0_wp, force)
    end function push
 end module springs

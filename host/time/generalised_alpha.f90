@@ -15,7 +15,6 @@ module generalised_alpha
    integer, parameter :: DYNAMIC = 3        !< Flow and equilibrium with accelerations.
 
    type :: scheme_t
-      integer :: kind = STATIC
       logical :: has_rates = .false.               !< There are first-order rates, and so flow.
       logical :: has_inertia = .false.             !< There are accelerations.
       real(wp) :: dt = 1.0_wp
@@ -58,7 +57,6 @@ contains
       logical, intent(in), optional :: begins   !< A flow begins: the rates before say nothing. Default: no.
       type(scheme_t) :: scheme
 
-      scheme%kind = kind
       scheme%has_rates = has_rates(kind)
       scheme%has_inertia = has_inertia(kind)
       scheme%dt = dt

@@ -13,7 +13,7 @@ HEAD = re.compile(r"^\s*((?:(?:\w+\s*\([^()]*\)|[\w*]+)\s+)*?)(function|subrouti
 FRAGMENT = re.compile(r"(what|of|the same|that|how|which|whose|its|their|those|likewise)\b", re.IGNORECASE)
 # Folders whose comments are sentences and noun phrases that stand alone.
 SPOKEN = ("umat/*", "umat/core/*", "common", "materials", "drivers/src", *(f"host/{name}" for name in (
-    "base", "time", "mesh", "element", "contact", "solver")))
+    "base", "time", "mesh", "element", "contact", "solver", "run", "output")), "host")
 IMPURE = re.compile(r"^\s*(?:if\s*\(.*\)\s*)?(print\b|write\s*\(|read\s*\(|open\s*\(|close\s*\(|flush\b|stop\b|"
                     r"error\s+stop\b|call\s+(?:execute_command_line|exit|abort)\b|allocate\s*\(|save\b)", re.IGNORECASE)
 DECLARATION = re.compile(r"^\s*(integer|real|logical|character|complex|type\s*\(|class\s*\()[^!]*::", re.IGNORECASE)

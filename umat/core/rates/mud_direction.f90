@@ -29,12 +29,12 @@ module mud_direction
    real(wp), parameter :: NEARLY_ALONG = 1.0e-6_wp
 
    !> The direction equation at one angle.
-   type :: trial_t
+   type :: angle_t
       real(wp) :: cosine, sine      !< cosine and sine of the angle w
       real(wp) :: residual          !< gamma sin(w) - beta r:q [kPa]
       real(wp) :: scale             !< gamma + |beta| r:q [kPa]
       real(wp) :: admissible        !< y |t|, positive if admissible [kPa]
-   end type trial_t
+   end type angle_t
 contains
    !> The unit direction n and what depends on it. Leaves w%loading false and sets w%no_root where none is admissible.
    !> On entry w has r, r - r_in, z, moduli and t > 0 of the rate, units as in rate_t. docs/theory/material.md sections
@@ -45,7 +45,7 @@ contains
       type(rate_t), intent(inout) :: w
       type(arc_t) :: arc
       type(equation_t) :: eq
-      type(trial_t) :: at
+      type(angle_t) :: at
       real(wp) :: n_t(6), q(6), start, tau
       logical :: found
 
@@ -92,7 +92,7 @@ contains
       real(wp), intent(in) :: guess     !< tau, if it is on the side where the root lies
       type(rate_t), intent(inout) :: w
       real(wp), intent(out) :: tau      !< with the sign of w
-      type(trial_t), intent(out) :: at
+      type(angle_t), intent(out) :: at
       logical, intent(out) :: found
       real(wp) :: side, low, high, last, start
       logical :: guarded, crossed, known
@@ -142,7 +142,7 @@ contains
       real(wp), intent(in) :: side, from, to, first
       type(rate_t), intent(inout) :: w
       real(wp), intent(out) :: tau
-      type(trial_t), intent(out) :: at
+      type(angle_t), intent(out) :: at
       real(wp) :: lower, upper, u, slope, step, previous
       integer :: iteration
 
@@ -181,10 +181,10 @@ contains
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side
-      type(trial_t), intent(in) :: at
+      type(angle_t), intent(in) :: at
       type(rate_t), intent(in) :: w
       type(moduli_t) :: passing
-      type(trial_t) :: there
+      type(angle_t) :: there
       real(wp) :: x_q
 
       single_root = max(arc%r_q, abs(at%sine))*sqrt(arc%x_t**2 + arc%x_q**2) <= NEARLY_ALONG*par%x_floor
@@ -261,7 +261,7 @@ contains
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: side
       type(moduli_t) :: m
-      type(trial_t) :: at
+      type(angle_t) :: at
 
       m%lode = 1.0_wp
       m%a_d = eq%a_0
@@ -320,7 +320,7 @@ contains
       type(arc_t), intent(in) :: arc
       real(wp), intent(in) :: tau
       type(moduli_t), intent(inout) :: m
-      type(trial_t), intent(out) :: at
+      type(angle_t), intent(out) :: at
 
       at%cosine = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
       at%sine = tau*(1.0_wp + at%cosine)
@@ -346,7 +346,7 @@ contains
       type(params_t), intent(in) :: par
       type(arc_t), intent(in) :: arc
       type(rate_t), intent(in) :: w
-      type(trial_t), intent(in) :: at
+      type(angle_t), intent(in) :: at
       type(slopes_t) :: s
       real(wp) :: dr, dx, dz, d_lode, dd, dh, d_beta, d_gamma
 
