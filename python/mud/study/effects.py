@@ -42,7 +42,7 @@ ELEMENTS = 60  # that a pilot's mesh has at least, where the scene's has
 MOST_TIMES, MOST_ALONE = 5.0, 60.0  # a pilot may cost so many times that of all effects; that one so many seconds
 SHARE, LEAST_RUN = 0.05, 30.0  # of the run that pilots may cost; below so much there are none [s of processor]
 LEAST_PILOTS = 4  # two of the scene, and two of effects
-CELLS, STEPS = 2.2, 0.3  # time grows with the cells to this power, and falls with the step tolerance to this one
+CELLS, STEPS = 2.0, 0.3  # time grows with the cells to this power, and falls with the step tolerance to this one
 USUAL_STEPS = 100  # of a pilot, as long as none has run
 NO_ANSWER, NO_PRESSURE = 1e-4, 1e-3  # smaller ranges are no answers: of the largest of a kind; of the stresses' change
 OVER_SHARE = "not tried: pilots would cost too much"
@@ -166,9 +166,11 @@ class Effects:
     def _list_others(self):
         """What the scene has: the host says of a word of `without` that the scene does not have it."""
         one, known = self.scene.list_of("scene")[0], {row.name for row in self.rows}
-        for word in WORDS:
-            if word in known or "does not have it" in self._check(word):
-                continue
+        words = [w for w in WORDS if w not in known]
+        said = self._check(words)
+        # Where all together cannot be left out, one by one.
+        absent = {w for w in words if f"'{w}' of &scene has no effect" in (said or self._check([w]))}
+        for word in (w for w in words if w not in absent):
             key = {"relative_acceleration": "seepage_inertia", "p_w": "fields", "p_c": "fields"}.get(word, word)
             says = key in one if word not in MUD else any(MUD[word] in m for m in self.scene.list_of("mud"))
             may = word in (*MUD, "relative_acceleration", "p_w", "p_c", "gravity")
@@ -180,13 +182,13 @@ class Effects:
                 for i, r in enumerate(regions, 1) if "drainage" not in r
             ]
 
-    def _check(self, word) -> str:
-        """What the host says of the scene without an effect, before it runs it."""
+    def _check(self, out) -> str:
+        """What the host says of the scene without effects, before it runs it; nothing if it refuses several."""
         before = processor()
         words = [self.scene.host, self.runs.path, "--check", "--quiet", "--fineness", f"{1 / self.cells:g}"]
-        done = subprocess.run([*words, "--set", f"scene.without={word}"], capture_output=True, text=True)
+        done = subprocess.run([*words, "--set", f"scene.without={','.join(out)}"], capture_output=True, text=True)
         self.spent += processor() - before
-        return done.stderr
+        return "" if done.returncode and len(out) > 1 else done.stderr + " "
 
     def without(self, rows) -> tuple[str, ...]:
         """Settings that leave effects out."""
@@ -286,10 +288,12 @@ class Effects:
     def _try(self, rows, base) -> list[Effect]:
         """A pilot without each effect; those that are to go."""
         out, steps, pilot = base
-        if pilot.seconds * len(rows) > self.left():
-            for row in (r for r in rows if r.by_hand):
+        room = self.left() / max(pilot.seconds, 1e-9) - 1  # one is kept for all that are to go
+        if len(rows) > room:
+            rows = sorted(rows, key=lambda r: r.by_hand)
+            for row in rows[max(0, int(room)):]:
                 row.why = OVER_SHARE
-            rows = [r for r in rows if not r.by_hand]
+            rows = rows[: max(0, int(room))]
         for row in rows:
             try:
                 found = self.pilot([*out, row], steps, MOST_TIMES * pilot.seconds + 1)
