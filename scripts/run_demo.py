@@ -3,7 +3,8 @@
 
 Six drained tests beside their laboratory points, twelve undrained tests beside the closed-form steady state, through the
 driver mud_triax: the page verification/material/verdugo_ishihara; the paper's indentation at a suction of 30 kPa through
-mud_host (its Fig. 3). Between them Toyoura sand with its published and with fitted parameters. This file only starts them.
+mud_host (its Fig. 3). Between them Toyoura sand with its published and with fitted parameters, and a light falling weight
+deflectometer on it by mud_lwd. This file only starts them.
 """
 import argparse
 import os
@@ -37,6 +38,17 @@ def indentation(host, folder):
     print(f"   largest indentation {columns['u_mm'][deepest]:.3f} mm at {columns['t_ms'][deepest]:.2f} ms, "
           f"{columns['u_mm'][-1]:.3f} mm at the end; p_w {columns['p_w_kPa'].max() - columns['p_w_kPa'][0]:+.2f} kPa under the centre")
     print(f"figure {figures.interface({'remedy': columns}, folder / 'indentation.png')}")
+
+
+def deflectometer(build, host, folder):
+    """A seating and a measured drop on Toyoura sand at a suction of 30 kPa, with their errors."""
+    print("\nA light falling weight deflectometer on unsaturated sand (about 20 seconds)", flush=True)
+    environment = {**os.environ, "MUD_LIBRARY_DIR": str(build), "PYTHONPATH": str(ROOT / "python")}
+    test = ["test", "--material", "toyoura", "--void-ratio", "0.8", "--suction", "30", "--drops", "1", "1"]
+    if subprocess.run([sys.executable, "-m", "mud.lwd", *test, "--host", host, "--output", folder / "lwd"],
+                      env=environment).returncode != 0:
+        sys.exit("run_demo: the deflectometer test did not come to its end.")
+    print(f"figure {folder / 'lwd/lwd.png'}; three seating and three measured drops on your ground: docs/how-to/lwd.md")
 
 
 def fitted_sand(build, folder):
@@ -91,9 +103,10 @@ def main():
     fitted_sand(build, folder)
     host = build / "host" / "mud_host"
     if host.exists():
+        deflectometer(build, host, folder)
         indentation(host, folder)
     else:
-        print("mud_host was not built (it needs UMFPACK and LAPACK): no indentation")
+        print("mud_host was not built (it needs UMFPACK and LAPACK): no deflectometer and no indentation")
 
 
 if __name__ == "__main__":
