@@ -190,7 +190,7 @@ def test_a_reversal_belongs_to_the_cycle_that_it_ends():
     stage = "control = 'undrained', cycle_by = 'q', amplitude = -15, cycles = 6, increment = 1e-5" + far
     loose = "p_eff = 100, void_ratio = 0.9"
     rows, _ = run(stage, initial=loose)
-    ratio = rows[6]["r_u"]
+    ratio = rows[6]["r_u"]*(1 - 1e-14)   # A row has sixteen digits, which may lie above the number.
     rows, notes = run(f"{stage}, stop_r_u = {ratio!r}", initial=loose)
     told = [note for note in notes if "pore pressure ratio" in note]
     check("a stop at a reversal is told in the cycle that it ends", len(rows) == 7 and rows[-1]["cycle"] == 3
