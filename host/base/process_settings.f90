@@ -87,7 +87,7 @@ contains
          allocate (character(length) :: word)
          call get_command_argument(i, word)
          first = [first, size(words) + 1]
-         words = [words, transfer(word, words), c_null_char]
+         words = [character(kind=c_char) :: words, transfer(word, words), c_null_char]
          deallocate (word)
       end do
       allocate (starts(size(first) + 1))

@@ -3,6 +3,7 @@
 import subprocess
 
 from checking import build, check, work
+from host_program import ENVIRONMENT
 import tables  # noqa: E402 (checking knows its folder)
 
 HOST = build / "tests/planted/mud_host"
@@ -29,7 +30,8 @@ SCENE = f"""&scene name = 'column' geometry = 'plane_strain' fields = 'u' /
 def run(name, text, *words):
     file = work / f"{name}.nml"
     file.write_text(text)
-    return subprocess.run([HOST, file, "--output", work / name, "--quiet", *words], capture_output=True, text=True)
+    return subprocess.run([HOST, file, "--output", work / name, "--quiet", *words], capture_output=True, text=True,
+                          env=ENVIRONMENT)
 
 
 def settlement(name, text):
@@ -68,7 +70,7 @@ def test_a_plate_on_springs_vibrates_with_their_stiffness():
 
 
 def test_its_keys_are_keys_of_the_scene():
-    template = subprocess.run([HOST, "--template"], capture_output=True, text=True).stdout
+    template = subprocess.run([HOST, "--template"], capture_output=True, text=True, env=ENVIRONMENT).stdout
     check("the template has them", "&spring" in template and "stiffness" in template, template[-500:])
     done = run("wrong", SCENE.replace("stiffness", "stifness"))
     check("a misspelt one is told the nearest", done.returncode == 2 and "stiffness" in done.stderr, done.stderr)
