@@ -85,7 +85,7 @@ contains
       type(pore_t), intent(out) :: new
       logical, intent(in) :: with_tangent
       real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)   !< The tangent where it is asked for.
-      real(wp), intent(out) :: drift(2, 2)   !< Magnitudes of parts of the fluxes, of both fluids and of water [m/s].
+      real(wp), intent(out) :: drift(2, 2)   !< Magnitudes of parts of the fluxes: both fluids, water [m/s].
       type(mixture_t) :: mix
 
       call fill_pores(domain, region, scheme, k, skeleton, old, new, mix)

@@ -244,8 +244,7 @@ contains
    end function has_water
 
    !> Magnitude that the residual of the water is small against [m3/s]. A flow of air that is much larger has no part in
-   !> it.
-   !> docs/theory/host.md section 5.1.
+   !> it. docs/theory/host.md section 5.1.
    pure real(wp) function water_scale(dofs, constraint, assembly, largest) result(scale)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
