@@ -172,35 +172,39 @@ contains
    !> What acts on groups of the mesh, for those who ask no more of it; terms add theirs.
    subroutine list_actions(model)
       type(model_t), intent(inout) :: model
-      type(action_t) :: plate
+      type(action_t) :: action   !< The one that is added: in an array constructor its own constructor would leak.
       integer :: i
 
       allocate (model%actions(0))
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            model%actions = [model%actions, action_t(one%file, one%line, '&load', one%group, one%amplitude, &
-               one%stages, along_normal=any(one%kind == [LOAD_PRESSURE, LOAD_RAIN]), bears=one%kind == LOAD_PRESSURE)]
+            action = action_t(one%file, one%line, '&load', one%group, one%amplitude, one%stages, &
+               along_normal=any(one%kind == [LOAD_PRESSURE, LOAD_RAIN]), bears=one%kind == LOAD_PRESSURE)
+            model%actions = [model%actions, action]
          end associate
       end do
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i))
-            model%actions = [model%actions, action_t(one%file, one%line, '&fix', one%group, &
-               merge(0, one%amplitude, one%hold), one%stages, one%from, supports=.true.)]
+            action = action_t(one%file, one%line, '&fix', one%group, merge(0, one%amplitude, one%hold), one%stages, &
+                              one%from, supports=.true.)
+            model%actions = [model%actions, action]
          end associate
       end do
       do i = 1, size(model%contacts)
          associate (one => model%contacts(i))
-            model%actions = [model%actions, action_t(one%file, one%line, '&contact', one%slave, 0, one%stages, &
-                                                     along_normal=.true., bears=.true.)]
-            if (one%plate == 0) model%actions = [model%actions, action_t(one%file, one%line, '&contact', one%master, &
-                                                                         0, one%stages, along_normal=.true.)]
+            action = action_t(one%file, one%line, '&contact', one%slave, 0, one%stages, along_normal=.true., &
+                              bears=.true.)
+            model%actions = [model%actions, action]
+            if (one%plate > 0) cycle
+            action = action_t(one%file, one%line, '&contact', one%master, 0, one%stages, along_normal=.true.)
+            model%actions = [model%actions, action]
          end associate
       end do
       do i = 1, size(model%plates)
          associate (one => model%plates(i))
-            plate = action_t(one%file, one%line, '&plate', one%group, one%amplitude, bears=.true.)
-            allocate (plate%stages(0))
-            model%actions = [model%actions, plate]
+            action = action_t(one%file, one%line, '&plate', one%group, one%amplitude, bears=.true.)
+            allocate (action%stages(0))
+            model%actions = [model%actions, action]
          end associate
       end do
    end subroutine list_actions
