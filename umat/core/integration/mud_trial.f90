@@ -35,6 +35,7 @@ module mud_trial
       real(wp) :: time              !< Pseudo-time of y0 [-].
       logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
       integer :: openings           !< How often p' has fallen to p_min in this increment or phase.
+      integer :: starts             !< How often a process that drifted back has gone forwards in this increment.
       type(relaxation_t) :: relaxation   !< Its stiff direction, of speed 0 where the substep is explicit.
       type(transient_t) :: transient     !< What fades of its rates; not of those in w.
       real(wp) :: parts             !< Void ratio at which the grains of a held point part [-].
