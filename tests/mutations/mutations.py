@@ -11,6 +11,7 @@ TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/
 BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_event_time.f90"
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
+EVENT_TABLE = "core/integration/mud_event_table.f90"
 PRELOADING = "core/laws/mud_preloading.f90"
 FLUIDITY = "core/laws/mud_fluidity.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
@@ -220,6 +221,9 @@ MUTATIONS = [
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
     ("a straight strain without the centre's part in its derivative",
      (INCREMENT, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
+    ("a switch of the isotropic mechanism that does not move",
+     (EVENT_TABLE, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
+    ("the place where a drift ends is not located", (EVENTS, "FEW_STARTS = 1", "FEW_STARTS = 0")),
     ("shear inside the elastic domain with the modulus at the stress",
      (INCREMENT, "g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)", "g = 2.0_wp*w%g")),
     ("no change of the modulus at the centre with the void ratio",

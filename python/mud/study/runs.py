@@ -215,8 +215,11 @@ class Scene:
         self.say(f"   run {self.made}: {key} ...", end="")
         start, before = time.monotonic(), processor()
         with open(folder / "said.txt", "w", encoding="utf-8") as said, open(folder / "errors.txt", "w") as errors:
-            process = subprocess.Popen(command, stdout=said, stderr=errors, preexec_fn=_limit(limit))
+            # An interrupt waits until the run is known: one that nobody knows would go on, and write.
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+            process = subprocess.Popen(command, stdout=said, stderr=errors, preexec_fn=_limit(limit, mask))
             try:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
                 while process.poll() is None:
                     try:
                         process.wait(WORDS_EVERY)
@@ -256,12 +259,16 @@ def list_of(groups, name: str) -> list:
     return list(found) if isinstance(found, list) else [found]
 
 
-def _limit(most):
-    """What ends a run that takes more processor time [s]; the system counts whole seconds."""
-    if most == math.inf:
-        return None
-    whole = max(1, math.ceil(most))
-    return lambda: resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 5))
+def _limit(most, mask):
+    """Sets in a new process what ends a run that takes more processor time [s], in whole seconds, and its signals."""
+
+    def begin():
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        if most != math.inf:
+            whole = max(1, math.ceil(most))
+            resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 5))
+
+    return begin
 
 
 def processor() -> float:

@@ -6,7 +6,7 @@ module mud_event_functions
    use mud_critical_state, only: bounding_ratio
    use mud_cutoff, only: rate_without_past, height, closing_function
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
-      EVENT_TURN, EVENT_YIELD, EVENT_UNLOAD, RATE_THERE, RATE_IF_CLOSED
+      EVENT_TURN, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS, RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_params, only: params_t
@@ -14,11 +14,12 @@ module mud_event_functions
    use mud_rates, only: stress_ratio
    use mud_return_point, only: place_t, place_at, projection_on_chord, beyond_target
    use mud_state, only: counters_t
-   use mud_tensor, only: norm, deviator
+   use mud_tensor, only: ddot, norm, deviator
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: event_function, rate_at_start, rate_at_end, place_of, elastic_rate, psi_at, LARGEST_EXCESS
+   public :: event_function, rate_at_start, rate_at_end, place_of, elastic_rate, backwards, psi_at, &
+             LARGEST_EXCESS
 
    !> Share by which r may exceed the bounding surface: at a low stress an elastic strain of rho_e may be more than the
    !> whole strength. Softening sand is some per cent beyond it and must be able to return where it came from [-].
@@ -84,6 +85,8 @@ contains
          f = allowed_excess(par, inc, trial) - excess(par, psi_at(par, inc, time, p), r)
       case (EVENT_REVERSAL)
          f = w%x + par%x_rev
+      case (EVENT_FORWARDS)
+         f = backwards(w)
       case (EVENT_YIELD)
          f = -trial%margin
          if (time > trial%time) f = -margin_after(par, inc, trial, time - trial%time)
@@ -130,6 +133,15 @@ contains
 
       t = (2.0_wp*w%g)*deviator(inc%d_strain) - (w%k*inc%d_v)*r
    end function elastic_rate
+
+   !> Speed at which r moves against the loading direction, times p' [stress]. Without a direction it is backwards.
+   !> docs/theory/memory-rules.md section 1.2.
+   pure real(wp) function backwards(w)
+      type(rate_t), intent(in) :: w
+
+      backwards = w%g
+      if (w%loading) backwards = w%r_n*w%d_p - ddot(w%d_sigma, w%n)
+   end function backwards
 
    !> Largest excess of r over the bounding surface in a substep inside the elastic domain: from farther outside it is
    !> the excess at the start.

@@ -12,13 +12,13 @@ module mud_event_time
    use mud_error_control, only: changes_root
    use mud_event_functions, only: psi_at
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, &
-      EVENT_YIELD, NO_RATE, RATE_THERE, RATE_IF_CLOSED
+      EVENT_YIELD, EVENT_MECHANISM, EVENT_FORWARDS, NO_RATE, RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows
    use mud_return_point, only: target_limit, is_limited
-   use mud_sensitivity, only: changes_of_rate, changes_of_drive
+   use mud_sensitivity, only: changes_of_rate, changes_of_drive, changes_of_iso_drive
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t
@@ -118,9 +118,19 @@ contains
                                  .false., rates, dn)
             slopes = contractions(dr - r_in%of, w%n) + contractions(dn, r - trial%r_in)
          end if
+      case (EVENT_MECHANISM)
+         call changes_of_rate(par, w, lin, .false., y, r_in, driving%d_strain, driving%from_centre, changes, .false., &
+                              rates)
+         slopes = changes_of_iso_drive(par, w, lin, void_ratio_at(inc, time), y, driving%d_strain, &
+                                       driving%from_centre, changes, rates)
       case (EVENT_YIELD)
          slopes = margin + changes_of_measure(par, inc, time, trial%y(1:6), y(:, 1:3), changes%e, changes%p_c, &
                                               changes%scans, changes%turn)
+      case (EVENT_FORWARDS)
+         call changes_of_rate(par, w, lin, .false., y, r_in, driving%d_strain, driving%from_centre, changes, .false., &
+                              rates, dn)
+         slopes = contractions(rates(:, 1:6), w%n) + contractions(dn, w%d_sigma - w%d_p*r) &
+                  - w%d_p*contractions(dr, w%n) - (w%r_n/3.0_wp)*(rates(:, 1) + rates(:, 2) + rates(:, 3))
       case (EVENT_BOUNDS, EVENT_RETURN)
          turn = 0.0_wp
          if (changes%scans) turn = changes%turn

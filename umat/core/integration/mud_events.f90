@@ -3,9 +3,9 @@
 module mud_events
    use mud_cutoff, only: is_below, end_at_parting, is_parted
    use mud_error_control, only: changes_root
-   use mud_event_functions, only: rate_at_end, place_of
+   use mud_event_functions, only: rate_at_end, place_of, backwards
    use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_PARTS, EVENT_CLOSES, EVENT_MECHANISM, &
-      EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN
+      EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate, NY
    use mud_integration, only: integration_t
    use mud_isotropic_memory, only: drive_of_margin, margin_after
@@ -14,6 +14,7 @@ module mud_events
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_return_point, only: place_t, projection_on_chord, note_progress, note_farthest
+   use mud_reversal, only: drags_memory
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
    use mud_trial, only: trial_t, take_step
@@ -27,6 +28,8 @@ module mud_events
    !> A margin of the isotropic memory that a substep exceeds by less than this share of the tolerance, or a drive that
    !> leads as far below it, is not looked at [-].
    real(wp), parameter :: SMALL_MARGIN = 0.01_wp
+   !> So many of an increment are located: where rates chatter there would be one after another.
+   integer, parameter :: FEW_STARTS = 1
    !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
    real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
 contains
@@ -99,6 +102,11 @@ contains
             call take_step(par, inc, h, trial, it%counters)
          case (EVENT_RETURN)
             possible = trial%watched > 0
+         case (EVENT_FORWARDS)
+            possible = drags_memory(par) .and. trial%w(1)%loading .and. .not. trial%advanced
+            if (possible) possible = trial%starts < FEW_STARTS .and. backwards(trial%w(1)) > 0.0_wp .and. &
+                                     (inc%scheme%first_same_as_last .or. &
+                                      backwards(trial%w(inc%scheme%stages)) <= 0.0_wp)
          end select
       end associate
    end subroutine look_ahead

@@ -37,6 +37,7 @@ contains
       integer :: i, n
 
       call list_cuts(par, it%inc, course, cuts, n)
+      it%trial%starts = 0
       from = 0.0_wp
       do i = 1, n
          call take_phase(par, from, cuts(i)%time, it%inc)

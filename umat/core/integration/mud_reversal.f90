@@ -4,13 +4,13 @@
 module mud_reversal
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT
+   use mud_registry, only: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT
    use mud_return_point, only: interrupt
    use mud_state, only: memory_t
    use mud_tensor, only: ddot
    implicit none (type, external)
    private
-   public :: new_memory, begin_process, accept_process, note_contraction, interrupted_share
+   public :: new_memory, begin_process, accept_process, drags_memory, note_contraction, interrupted_share
 contains
    !> Memory of a point that starts at, or comes back without a past to, the stress ratio r. r and all of the memory
    !> [-]. docs/theory/material.md section 1.4.
@@ -64,6 +64,14 @@ contains
       memory%eps_q_p = 0.0_wp
       memory%x_running = 0.0_wp
    end subroutine begin_process
+
+   !> True where a process that has not gone forwards yet takes its beginning along while it drifts backwards: the rules
+   !> that begin anew at r. docs/theory/memory-rules.md section 1.2.
+   pure logical function drags_memory(par)
+      type(params_t), intent(in) :: par
+
+      drags_memory = par%guarded .and. (par%memory_rule == RULE_CLASSIC .or. par%memory_rule == RULE_RETURN_POINT)
+   end function drags_memory
 
    !> Books an accepted substep with a plastic contraction of `grown` by which ln chi' has changed by `lost`. What is
    !> contraction of the present process comes before what dilation takes from all, or after: where D changes its sign

@@ -8,7 +8,8 @@ module mud_transitions
    use mud_consistent, only: jump_of_memory, changes_of_parting, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_cutoff, only: landed, may_open, closing_mode, closes, parting, gap_at, MODE_HELD
    use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS
-   use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_YIELD, EVENT_REVERSAL, EVENT_RETURN
+   use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_YIELD, EVENT_REVERSAL, EVENT_RETURN, &
+      EVENT_FORWARDS
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
    use mud_integration, only: integration_t
@@ -77,7 +78,8 @@ contains
             call first_rate(par, it)
          end if
          call apply_memory_rule(par, r, it)
-         it%trial%advanced = it%state%memory%x_running > 0.0_wp .or. it%trial%w(1)%x > 0.0_wp
+         it%trial%advanced = it%state%memory%x_running > 0.0_wp .or. it%trial%w(1)%x > 0.0_wp .or. &
+                             it%event == EVENT_FORWARDS
       end if
 
       if (par%remembers) call try_to_unload(par, it)
@@ -161,10 +163,13 @@ contains
       if (par%memory_rule == RULE_RETURN_POINT) then
          call try_to_return(par, it%event == EVENT_RETURN, r, t, it)
       end if
-      if (.not. it%trial%w(1)%loading .or. it%trial%w(1)%x >= 0.0_wp) return
-      if (it%trial%w(1)%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL) then
-         it%counters%hysteresis = it%counters%hysteresis + 1
-         return
+      if (.not. it%trial%w(1)%loading) return
+      if (it%event /= EVENT_FORWARDS) then
+         if (it%trial%w(1)%x >= 0.0_wp) return
+         if (it%trial%w(1)%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL) then
+            it%counters%hysteresis = it%counters%hysteresis + 1
+            return
+         end if
       end if
       it%counters%reset = it%counters%reset + 1
       it%jump = JUMP_REVERSAL
@@ -280,6 +285,7 @@ contains
          if (it%event == EVENT_YIELD) it%state%margin = 0.0_wp
       end if
       it%state%sigma = landed(par, it%state%sigma)
+      if (it%event == EVENT_FORWARDS) it%trial%starts = it%trial%starts + 1
       if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
       ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface
       if (it%event == EVENT_BOUNDS) it%trial%pressed = .true.

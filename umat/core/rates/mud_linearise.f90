@@ -18,7 +18,8 @@ module mud_linearise
    use mud_tensor, only: LANES, contractions, trace
    implicit none (type, external)
    private
-   public :: linearised_t, linearise, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, NRATES
+   public :: linearised_t, linearise, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
+             linearise_mechanism, changes_of_hardening, NRATES
 
    !> Terms of a derivative of a rate that all directions share.
    type, extends(turn_t) :: linearised_t
@@ -103,16 +104,25 @@ contains
       end if
       lin%per_p = 1.0_wp/w%p
       lin%per_f = 1.0_wp/w%bond%f
-      if (w%iso_active) then
-         call lode_gradient(par, w%r, w%r_norm, lin%lode_r, lin%lode_r_slope)
-         lin%mechanism = isotropic_slopes(par, w%bond, e, swelling_slope(w%k, e, w%p), SQRT_2_3*lin%lode_r*w%m_b, w%iso)
-      end if
+      if (w%iso_active) call linearise_mechanism(par, w, e, lin)
       if (.not. w%loading) return
       call find_turn(par, w, lin%turn_t)
       lin%on_e = (lin%on_t + (w%k_e*(lin%d_v - w%b_rate))*lin%on_r)/(2.0_wp*w%g)   ! t = 2 G e - V r
       lin%per_gamma = 1.0_wp/w%gamma
       lin%per_y = 1.0_wp/w%y
    end subroutine linearise
+
+   !> Sets the part of a linearisation that has the isotropic mechanism, which acts or would.
+   !> docs/theory/integration.md section 5.3.
+   pure subroutine linearise_mechanism(par, w, e, lin)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: e
+      type(linearised_t), intent(inout) :: lin
+
+      call lode_gradient(par, w%r, w%r_norm, lin%lode_r, lin%lode_r_slope)
+      lin%mechanism = isotropic_slopes(par, w%bond, e, swelling_slope(w%k, e, w%p), SQRT_2_3*lin%lode_r*w%m_b, w%iso)
+   end subroutine linearise_mechanism
 
    !> Sets the changes that change_point leaves where only the strain rate and the suction rate change. Units as in
    !> change_point.
@@ -189,6 +199,31 @@ contains
       c = lin%per_p*(contractions(y(:, 1:6), a) - a_on_r*p)
    end function along_ratio
 
+   !> Changes of A and of B per suction of the isotropic mechanism, in the units of both.
+   pure subroutine changes_of_hardening(w, lin, y, changes, x, a, b)
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      real(wp), intent(in) :: y(LANES, NRATES)
+      type(changes_t), intent(in) :: changes
+      type(lanes_t), intent(in) :: x
+      real(wp), dimension(LANES), intent(out) :: a, b
+      real(wp), dimension(LANES) :: r_dr, r_b
+      real(wp) :: f
+      integer :: j
+
+      r_dr = along_ratio(lin, y, x%p, w%r, w%r_norm**2)
+      r_b = (lin%per_p/lin%lode_r)*contractions(y(:, 1:6), lin%lode_r_slope) + x%m_b/w%m_b   ! no part along r
+      associate (of => lin%mechanism)
+         do j = 1, LANES
+            f = lin%per_f*x%f(j)
+            a(j) = of%a(BY_P)*x%share(j) + of%a(BY_E)*changes%e(j) + of%a(BY_F)*f + of%a(BY_F_E)*x%f_e(j) &
+                + of%a(BY_R)*r_dr(j) + of%a(BY_R_B)*r_b(j)
+            b(j) = of%b(BY_P)*x%share(j) + of%b(BY_E)*changes%e(j) + of%b(BY_F)*f + of%b(BY_F_E)*x%f_e(j) &
+                + of%b(BY_R)*r_dr(j) + of%b(BY_R_B)*r_b(j) + of%b_f_pc*x%f_pc(j)
+         end do
+      end associate
+   end subroutine changes_of_hardening
+
    !> Change of K_e and of B while the isotropic mechanism acts.
    pure subroutine change_of_mechanism(w, lin, y, changes, x)
       type(rate_t), intent(in) :: w
@@ -196,26 +231,18 @@ contains
       real(wp), intent(in) :: y(LANES, NRATES)
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
-      real(wp), dimension(LANES) :: r_dr, r_b
-      real(wp) :: k_a, softening, per_softening, f, a, b, dk
+      real(wp), dimension(LANES) :: a, b
+      real(wp) :: k_a, softening, per_softening, dk
       integer :: j
 
       k_a = w%k*lin%per_p
       softening = k_a*w%iso%a
       per_softening = 1.0_wp/(1.0_wp + softening)
-      r_dr = along_ratio(lin, y, x%p, w%r, w%r_norm**2)
-      r_b = (lin%per_p/lin%lode_r)*contractions(y(:, 1:6), lin%lode_r_slope) + x%m_b/w%m_b   ! no part along r
-      associate (of => lin%mechanism)
-         do j = 1, LANES
-            f = lin%per_f*x%f(j)
-            a = of%a(BY_P)*x%share(j) + of%a(BY_E)*changes%e(j) + of%a(BY_F)*f + of%a(BY_F_E)*x%f_e(j) &
-                + of%a(BY_R)*r_dr(j) + of%a(BY_R_B)*r_b(j)
-            b = of%b(BY_P)*x%share(j) + of%b(BY_E)*changes%e(j) + of%b(BY_F)*f + of%b(BY_F_E)*x%f_e(j) &
-                + of%b(BY_R)*r_dr(j) + of%b(BY_R_B)*r_b(j) + of%b_f_pc*x%f_pc(j)
-            dk = x%k(j)/w%k
-            x%k_e(j) = w%k_e*(dk - (k_a*a + softening*(dk - x%share(j)))*per_softening)
-            x%b(j) = w%iso%b*changes%d_pc(j) + lin%d_pc*b
-         end do
-      end associate
+      call changes_of_hardening(w, lin, y, changes, x, a, b)
+      do j = 1, LANES
+         dk = x%k(j)/w%k
+         x%k_e(j) = w%k_e*(dk - (k_a*a(j) + softening*(dk - x%share(j)))*per_softening)
+         x%b(j) = w%iso%b*changes%d_pc(j) + lin%d_pc*b(j)
+      end do
    end subroutine change_of_mechanism
 end module mud_linearise

@@ -10,7 +10,8 @@
 module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_linearise, only: linearised_t, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, NRATES
+   use mud_linearise, only: linearised_t, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
+      linearise_mechanism, changes_of_hardening, NRATES
    use mud_rate, only: rate_t
    use mud_tensor, only: LANES, tensors_t, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: loading_contracted, loading_traces, add_loading
@@ -19,7 +20,7 @@ module mud_sensitivity
    use mud_hardening, only: KINEMATIC_EXPONENT
    implicit none (type, external)
    private
-   public :: changes_of_rate, changes_of_drive
+   public :: changes_of_rate, changes_of_drive, changes_of_iso_drive
 
 contains
    !> Changes of the rates of stress, fabric and plastic shear, and of the loading direction. Units of the results [kPa,
@@ -92,6 +93,35 @@ contains
       c = (2.0_wp*w%g)*loading_contracted(changes%loading, strain, centre, w%n) + (2.0_wp*lin%on_e(1))*x%g &
           - w%r_n*x%volumetric - (w%k_e*(lin%d_v - w%b_rate))*along_ratio(lin, y, x%p, w%n, w%r_n)
    end function changes_of_drive
+
+   !> Changes of the drive A dp'/p' + B of the isotropic mechanism with those of the rate of stress, where it is 0:
+   !> there it is that with the mechanism and that without, and so are its changes but for a positive factor. e is the
+   !> void ratio there [-]. Part of docs/theory/integration.md section 4.3.
+   pure function changes_of_iso_drive(par, w, lin, e, y, strain, centre, changes, rates) result(c)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(linearised_t), intent(in) :: lin
+      real(wp), intent(in) :: e
+      real(wp), intent(in) :: y(LANES, NRATES), rates(LANES, NRATES)   !< as in changes_of_rate
+      type(tensors_t), intent(in) :: strain, centre
+      type(changes_t), intent(in) :: changes
+      real(wp) :: c(LANES)
+      type(linearised_t) :: there
+      type(lanes_t) :: x
+      real(wp), dimension(LANES) :: a, b, d_p
+      real(wp) :: by_p
+
+      there = lin
+      call linearise_mechanism(par, w, e, there)
+      x%v = loading_traces(changes%loading, strain, centre)
+      call change_point(w, there, y, changes, x)
+      call changes_of_hardening(w, there, y, changes, x, a, b)
+      ! of the strain that loads alone
+      d_p = (rates(:, 1) + rates(:, 2) + rates(:, 3))/3.0_wp - x%k*(lin%whole_v - lin%d_v) &
+            - w%k*(traces(strain) - x%v)
+      by_p = (w%d_p - w%k*(lin%whole_v - lin%d_v))*lin%per_p
+      c = by_p*(a - w%iso%a*x%share) + (w%iso%a*lin%per_p)*d_p + lin%d_pc*b + w%iso%b*changes%d_pc
+   end function changes_of_iso_drive
 
    !> Changes of D, 1/h, beta and gamma at the present direction, and how dr contracts with the gradients along n.
    pure subroutine change_moduli(par, w, lin, y, r_in, changes, x)
