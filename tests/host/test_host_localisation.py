@@ -7,8 +7,9 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
-from checking import build, check, root, work
+from checking import NO_LIBRARY, build, check, preset, root, work
 from host_program import ENVIRONMENT, start
 
 sys.path.insert(0, str(root / "common"))
@@ -111,6 +112,7 @@ def test_threads_and_checkpoints_leave_the_share_as_it_is():
           and re.search(r"since \S+ s", again.stderr)[0] == re.search(r"since \S+ s", whole.stderr)[0], again.stderr)
 
 
+@pytest.mark.skipif(preset == "sanitize", reason=NO_LIBRARY)
 def test_a_study_ends_as_localised():
     path, folder = work / "studied.nml", work / "studied"
     path.write_text(scene(cells=2))

@@ -94,6 +94,7 @@ contains
       type(model_t), intent(in) :: model
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
+      type(linear_forces_t) :: force
       integer, allocatable :: at(:)
       integer :: i
 
@@ -105,8 +106,9 @@ contains
          associate (nodes => model%domain%mesh%groups(self%springs(i)%group)%nodes)
             at = pack(model%dofs%of(:DISPLACEMENTS, nodes), model%dofs%of(:DISPLACEMENTS, nodes) > 0)
          end associate
-         solution%constraint%linear = [solution%constraint%linear, linear_forces_t(.false., .false., at, at, &
-                                       spread(self%springs(i)%stiffness, 1, size(at)))]
+         ! A variable, since gfortran leaks components of a constructor within an array.
+         force = linear_forces_t(.false., .false., at, at, spread(self%springs(i)%stiffness, 1, size(at)))
+         solution%constraint%linear = [solution%constraint%linear, force]
          self%springs(i)%place = size(solution%constraint%linear)
       end do
    end subroutine begin_run
