@@ -163,7 +163,7 @@ contains
       value = values(1)
    end subroutine exchange_real
 
-   !> Whole numbers in the order of a list. Damaged: one is no whole number or lies outside the range.
+   !> Exchanges whole numbers. The archive is damaged where one is no whole number or lies outside the range.
    subroutine exchange_numbers(self, name, numbers, unit, meaning, least, most)
       class(archive_t), intent(inout) :: self
       character(*), intent(in) :: name, unit, meaning

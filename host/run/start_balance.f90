@@ -72,13 +72,15 @@ contains
       type(run_t), intent(in) :: run
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
       real(wp), intent(out) :: most          !< The largest of them [kPa].
+      real(wp) :: water
       integer :: i
 
       most = 0.0_wp
       do i = 1, size(model%loads)
-         if (.not. water_in(model, run, model%loads(i)) > 0.0_wp) cycle
+         water = water_in(model, run, model%loads(i))
+         if (.not. water > 0.0_wp) cycle
          forces = forces + load_at_start(model, model%loads(i))
-         most = max(most, water_in(model, run, model%loads(i)))
+         most = max(most, water)
       end do
    end subroutine add_weight_of_water
 

@@ -398,29 +398,8 @@ def test_effects_are_kept_and_dropped_as_they_matter():
               and (work / f"study_{name}/effects.csv").read_bytes() == before, again.stderr)
 
 
-def strip(cells):
-    """Ground under a strip that leaves open inertia, fields and weight; every axis has so many cells."""
-    return f"""&scene name = 'strip' geometry = 'plane_strain' effects = 'auto' gravity = 0 step_tolerance = 1e-2 /
-&mesh r = 0, 4 r_cells = {cells} z = -4, 0 z_cells = {cells} /
-&elastic name = 'soil' young = 1e4 poisson = 0.25 /
-&retention name = 'c' P_a = 5 omega = 0 n = 2 m = 1 /
-&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
-&region material = 'soil' void_ratio = 0.6 permeability = 'k' retention = 'c' /
-&history name = 'h' times = 0, 100 values = 0, 1 /
-&stage name = 'load' duration = 2000 /
-&fix group = 'left' field = 'u_r' /
-&fix group = 'right' field = 'u_r' /
-&fix group = 'bottom' field = 'u_z' /
-&fix group = 'top' field = 'p_w' /
-&fix group = 'top' field = 'p_a' /
-&load group = 'top' kind = 'pressure' value = 10 history = 'h' /
-&point name = 'centre' r = 0 z = 0 /
-&point name = 'deep' r = 0 z = -1 /
-"""
-
-
 def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
-    done, _, folder = study("effects", strip(4), "coarse", "--run")
+    done, _, folder = study("effects", scenes.strip(4), "coarse", "--run")
     check(
         "no pilot where cells cannot be spared",
         "0 pilots" in done.stdout and "no effect is tried" in done.stdout,
@@ -436,11 +415,11 @@ def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
         done.stderr,
     )
     # What is short depends on the machine: the same run is below what it is quoted at, and above half of that.
-    done, _, _ = study("effects", strip(80), "short", "--least-run", "1e4")
+    done, _, _ = study("effects", scenes.strip(80), "short", "--least-run", "1e4")
     told = re.search(r"quoted at (\S+) s of processor time, less than 10000 s", done.stdout)
     check("one where the run is short", "1 pilots" in done.stdout and told, done.stdout)
     least = float(told.group(1)) / 2
-    done, _, folder = study("effects", strip(80), "long", "--least-run", str(least))
+    done, _, folder = study("effects", scenes.strip(80), "long", "--least-run", str(least))
     spent, quote = map(float, re.search(r"pilots, (\S+) s .* quoted at (\S+) s", done.stdout).groups())
     check("a twentieth of a long one", quote > least and spent <= quote / 20, (spent, quote))
     table = {row["effect"]: row["on"] for row in tables.rows(folder / "effects.csv")}

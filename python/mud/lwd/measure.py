@@ -11,12 +11,12 @@ import re
 import time
 from dataclasses import dataclass
 
+from ..study.accuracy import HALF_DECADE
 from ..study.runs import Scene
 from .answers import Answers, answers_of
 from .ground import Test, scene_of, write_record
 
 FINENESS, TOLERANCE = 1.0, 0.03
-HALF_DECADE = 10**0.5
 # Processor time of the four runs, over that of the last.
 SHARES = (0.15, 0.25, 0.25, 1.0)
 UNITS = {"modulus": ("MN/m2", 1e-3), "influence": ("m", 1.0)}

@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import f90nml
+from scenes import strip
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT / "common"), str(ROOT / "verification"), str(ROOT / "python")]
@@ -18,27 +19,6 @@ from mud.study.effects import settled, write_scene  # noqa: E402
 from tools import results  # noqa: E402
 
 NAMES = ("scene", "pilots", "spent", "quoted", "run", "share", "off")
-
-
-def strip(cells):
-    """Unsaturated ground under a slow load: inertia, suction and water are left open."""
-    return f"""&scene name = 'strip' geometry = 'plane_strain' effects = 'auto' gravity = 0 step_tolerance = 1e-2 /
-&mesh r = 0, 4 r_cells = {cells} z = -4, 0 z_cells = {cells} /
-&elastic name = 'soil' young = 1e4 poisson = 0.25 /
-&retention name = 'c' P_a = 5 omega = 0 n = 2 m = 1 /
-&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
-&region material = 'soil' void_ratio = 0.6 permeability = 'k' retention = 'c' /
-&history name = 'h' times = 0, 100 values = 0, 1 /
-&stage name = 'load' duration = 2000 /
-&fix group = 'left' field = 'u_r' /
-&fix group = 'right' field = 'u_r' /
-&fix group = 'bottom' field = 'u_z' /
-&fix group = 'top' field = 'p_w' /
-&fix group = 'top' field = 'p_a' /
-&load group = 'top' kind = 'pressure' value = 10 history = 'h' /
-&point name = 'centre' r = 0 z = 0 /
-&point name = 'deep' r = 0 z = -1 /
-"""
 
 
 def footing(cells):

@@ -36,6 +36,27 @@ def column(keys="", stage="duration = 10", times="0, 10", values="0, 1", load=10
 """
 
 
+def strip(cells):
+    """Unsaturated ground under a slow strip load, so many cells along every axis: inertia, fields and weight are open."""
+    return f"""&scene name = 'strip' geometry = 'plane_strain' effects = 'auto' gravity = 0 step_tolerance = 1e-2 /
+&mesh r = 0, 4 r_cells = {cells} z = -4, 0 z_cells = {cells} /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&retention name = 'c' P_a = 5 omega = 0 n = 2 m = 1 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' /
+&region material = 'soil' void_ratio = 0.6 permeability = 'k' retention = 'c' /
+&history name = 'h' times = 0, 100 values = 0, 1 /
+&stage name = 'load' duration = 2000 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'p_w' /
+&fix group = 'top' field = 'p_a' /
+&load group = 'top' kind = 'pressure' value = 10 history = 'h' /
+&point name = 'centre' r = 0 z = 0 /
+&point name = 'deep' r = 0 z = -1 /
+"""
+
+
 CANTILEVER = f"""&scene name = 'cantilever' geometry = 'plane_strain' {AUTO} /
 &mesh r = 0, 10 r_cells = 40 z = -0.1, 0.1 z_cells = 2 /
 &elastic name = 'soil' young = 3.0e7 poisson = 0.2 /
