@@ -8,7 +8,8 @@ module benchmark_walk
       mud_update_points, mud_points, mud_blocks, mud_index, mud_count, mud_report, MUD_PROPS, &
       MUD_STATEV, MUD_TANGENT_NONE
    use mud_params, only: params_t, read_params
-   use mud_rates, only: rate_at, MODE_ORDINARY
+   use mud_preloading, only: NO_CONTRACTION
+   use mud_rates, only: rate_at, conditions_t, MODE_ORDINARY
    use mud_rate, only: rate_t
    use mud_registry, only: NPROPS, NSTATV
    use mud_status, only: mud_status_t
@@ -70,6 +71,9 @@ module benchmark_walk
          type(timespec_t), intent(out) :: time
       end function clock_gettime
    end interface
+
+   !> The last numbers of a rate's vector without cyclic preloading and fluidity.
+   real(wp), parameter :: NO_EFFECTS(4) = [0.0_wp, NO_CONTRACTION, 0.0_wp, 0.0_wp]
 contains
    !> A failure of the library here is a fault of the benchmark: it ends the program.
    type(path_t) function path_named(name) result(path)
@@ -225,6 +229,7 @@ contains
       real(wp) :: props(WORDS), material(mud_prepared_size()), stress(6), statev(WORDS), d_strain(6), d_pc, z(6), &
          r_in(6), checksum
       type(params_t) :: par
+      type(conditions_t) :: at
       type(mud_status_t) :: status
       type(rate_t) :: w
       type(mud_report) :: report
@@ -244,12 +249,12 @@ contains
       r_in = statev(memory + 1:memory + 6)
       d_strain = -path%to*[1.0_wp, 1.0_wp, 1.0_wp, 0.5_wp, 0.5_wp, 0.5_wp]
       d_pc = path%d_suction
+      at = conditions_t(is_bonded(par, path%suction), .false., path%void_ratio, path%suction, r_in)
       checksum = 0.0_wp
       before = now(OF_THIS_THREAD)
       do i = 1, evaluations
          d_strain(1) = d_strain(1)*(1.0_wp + 1.0e-6_wp)
-         call rate_at(par, is_bonded(par, path%suction), -stress, path%void_ratio, path%suction, z, r_in, d_strain, &
-                      d_pc, MODE_ORDINARY, w)
+         call rate_at(par, [-stress, z, NO_EFFECTS], at, d_strain, d_pc, MODE_ORDINARY, w)
          checksum = checksum + w%d_p
       end do
       after = now(OF_THIS_THREAD)
@@ -323,8 +328,9 @@ contains
       type(met_rates_t), intent(in) :: this
       type(rate_t), intent(inout) :: w
 
-      call rate_at(this%par, .false., this%stress, this%void_ratio, 0.0_wp, this%z, this%r_in, this%d_strain, 0.0_wp, &
-                   MODE_ORDINARY, w)
+      call rate_at(this%par, [this%stress, this%z, NO_EFFECTS], &
+                   conditions_t(e=this%void_ratio, p_c=0.0_wp, r_in=this%r_in), &
+                   this%d_strain, 0.0_wp, MODE_ORDINARY, w)
    end subroutine evaluate
 
    !> The rates of one kind, one after the other.

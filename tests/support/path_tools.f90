@@ -7,7 +7,7 @@ module path_tools
    use mud_params, only: params_t, read_params, default_props
    use mud_point, only: update_point, TANGENT_NONE
    use mud_rate, only: rate_t
-   use mud_rates, only: rate_at, MODE_ORDINARY
+   use mud_rates, only: rate_at, conditions_t, MODE_ORDINARY
    use mud_registry, only: NPROPS, P_RHO_E
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t
@@ -16,10 +16,12 @@ module path_tools
    use mud_start, only: initial_state
    use mud_trace, only: trace_t
    use random_states, only: random_t, uniform
+   use mud_preloading, only: NO_CONTRACTION
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_LOG_CHI, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: material, isotropic, general_start, update_between, advance, rate_of_state, undrained, axial_only, &
-             triaxial, mean_stress, shear_stress, distance, full, rotation
+             triaxial, mean_stress, shear_stress, distance, full, rotation, vector_of
 
 contains
    !> The parameters of the paper, so without elastic domain, with some entries changed; an entry that is not accepted
@@ -148,12 +150,25 @@ contains
       type(state_t), intent(in) :: state
       real(wp), intent(in) :: d_strain(6), d_pc
       type(rate_t) :: w
-      logical :: bonded
 
-      bonded = is_bonded(par, max(state%p_c, state%p_c + d_pc))
-      call rate_at(par, bonded, state%sigma, state%e, state%p_c, state%z, state%memory%r_in, d_strain, d_pc, &
-                   MODE_ORDINARY, w)
+      call rate_at(par, vector_of(state%sigma, state%z), &
+                   conditions_t(is_bonded(par, max(state%p_c, state%p_c + d_pc)), .false., state%e, state%p_c, &
+                                state%memory%r_in), d_strain, d_pc, MODE_ORDINARY, w)
    end function rate_of_state
+
+   !> The integrated vector of stress [kPa] and fabric, of ln of the contraction that others left, and of a fluidity.
+   pure function vector_of(sigma, z, log_chi, ell) result(y)
+      real(wp), intent(in) :: sigma(6), z(6)
+      real(wp), intent(in), optional :: log_chi, ell
+      real(wp) :: y(NY)
+
+      y = 0.0_wp
+      y(1:6) = sigma
+      y(Y_Z:Y_Z_END) = z
+      y(Y_LOG_CHI) = NO_CONTRACTION
+      if (present(log_chi)) y(Y_LOG_CHI) = log_chi
+      if (present(ell)) y(Y_FLUIDITY) = ell
+   end function vector_of
 
    !> Triaxial strain at constant volume, axis 1.
    pure function undrained(eps_a) result(strain)

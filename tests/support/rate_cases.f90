@@ -5,11 +5,11 @@ module rate_cases
    use mud_params, only: params_t, read_params, default_props
    use mud_critical_state, only: bounding_norm
    use mud_rate, only: rate_t
-   use mud_rates, only: rate_at, MODE_ORDINARY, MODE_ELASTIC
+   use mud_rates, only: rate_at, conditions_t, MODE_ORDINARY, MODE_ELASTIC
    use mud_status, only: mud_status_t
    use mud_registry, only: P_G_0, P_K_0, P_M_C, P_N_B, P_N_D, P_H_0, P_A_0
    use mud_tensor, only: IDENTITY, norm, ddot, deviator
-   use path_tools, only: material
+   use path_tools, only: material, vector_of
    use random_states, only: random_t, uniform, log_uniform, random_tensor, random_deviator
    implicit none (type, external)
    private
@@ -33,13 +33,15 @@ contains
       if (a%loading) same_branch = (a%z_n > 0.0_wp .eqv. b%z_n > 0.0_wp) .and. norm(a%n - b%n) < 0.1_wp
    end function same_branch
 
-   subroutine evaluate(this, d_strain, d_pc, w)
+   subroutine evaluate(this, d_strain, d_pc, w, near)
       type(case_t), intent(in) :: this
       real(wp), intent(in) :: d_strain(6), d_pc
       type(rate_t), intent(inout) :: w
+      type(rate_t), intent(in), optional :: near   !< as rate_at has it
 
-      call rate_at(this%par, this%p_c > 0.0_wp, this%sigma, this%e, this%p_c, this%z, this%r_in, d_strain, d_pc, &
-                   this%mode, w)
+      call rate_at(this%par, vector_of(this%sigma, this%z), &
+                   conditions_t(this%p_c > 0.0_wp, .false., this%e, this%p_c, this%r_in), d_strain, d_pc, &
+                   this%mode, w, near)
    end subroutine evaluate
 
    !> A random state of a kind, with stress ratios up to and beyond the bounding surface.

@@ -11,8 +11,7 @@ module mud_consistent
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
    use mud_isotropic_memory, only: margins_at_stages, changes_of_measure, changes_by_shear
    use mud_fluidity, only: recovery
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, live_numbers, &
-      NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, live_numbers
    use mud_inside_domain, only: changes_inside
    use mud_params, only: params_t
    use mud_preloading, only: NO_CONTRACTION
@@ -29,6 +28,7 @@ module mud_consistent
       add_changes_of_faded
    use mud_trial, only: trial_t
    use mud_linearise, only: linearised_t, linearise, changes_t
+   use mud_vector, only: NY, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, changes_of_contraction, jump_of_memory, &
@@ -105,8 +105,8 @@ contains
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dh(DIRECTIONS), rates(DIRECTIONS, NY, MAX_STAGES)
 
-      sens%log_chi0 = sens%y(:, 14)
-      sens%y(:, 15) = 0.0_wp
+      sens%log_chi0 = sens%y(:, Y_LOG_CHI)
+      sens%y(:, Y_CONTRACTION) = 0.0_wp
       dh = h*sens%stretch
       if (last) dh = end_shift - sens%shift
       if (trial%mode == MODE_HELD) then
@@ -137,8 +137,8 @@ contains
       type(sensitivity_t), intent(inout) :: sens
 
       if (trial%mode == MODE_HELD) return
-      sens%chi_own = exp(min(trial%y(14) - trial%y0(14), 0.0_wp)) &
-                     *(sens%chi_own + chi_own*(sens%y(:, 14) - sens%log_chi0)) + sens%y(:, 15)
+      sens%chi_own = exp(min(trial%y(Y_LOG_CHI) - trial%y0(Y_LOG_CHI), 0.0_wp)) &
+                     *(sens%chi_own + chi_own*(sens%y(:, Y_LOG_CHI) - sens%log_chi0)) + sens%y(:, Y_CONTRACTION)
    end subroutine changes_of_contraction
 
    !> Derivatives of the contraction across a jump of the memory from `before` to `after`. A process that is interrupted
@@ -150,7 +150,7 @@ contains
       real(wp) :: all(DIRECTIONS), others
 
       others = before%chi - before%chi_own
-      all = sens%chi_own + others*sens%y(:, 14)
+      all = sens%chi_own + others*sens%y(:, Y_LOG_CHI)
       select case (jump)
       case (JUMP_REVERSAL)
          sens%chi_own = 0.0_wp
@@ -161,9 +161,9 @@ contains
          sens%chi_own = 0.0_wp
          all = 0.0_wp
       end select
-      sens%y(:, 14) = 0.0_wp
+      sens%y(:, Y_LOG_CHI) = 0.0_wp
       others = after%chi - after%chi_own
-      if (others > exp(NO_CONTRACTION)) sens%y(:, 14) = (all - sens%chi_own)/others
+      if (others > exp(NO_CONTRACTION)) sens%y(:, Y_LOG_CHI) = (all - sens%chi_own)/others
    end subroutine jump_of_contraction
 
    !> Derivative of the end of a substep with respect to its size. Per unit of h, a share of inc; [kPa, -, -] for
@@ -378,7 +378,8 @@ contains
       call changes_of_rate(par, w, lin, rests, y, r_in, driving%d_strain, driving%from_centre, &
                            changes, stress_only, rates)
       if (par%fluid .and. inc%d_v > 0.0_wp .and. .not. stress_only) &
-         rates(:, 16) = rates(:, 16) - recovery(par, inc%d_v)*y(:, 16) - (par%r_ell*point(16))*driving%d_v
+         rates(:, Y_FLUIDITY) = rates(:, Y_FLUIDITY) - recovery(par, inc%d_v)*y(:, Y_FLUIDITY) &
+                                - (par%r_ell*point(Y_FLUIDITY))*driving%d_v
    end subroutine change_of_stage
 
    !> True where void ratio and suction do not change.
@@ -473,7 +474,7 @@ contains
             if (after%depth >= sens%settled) sens%r_in%of = sens%interrupted(:, :, after%depth + 1)
          end if
          sens%settled = min(sens%settled, after%depth)
-         sens%y(:, 13) = 0.0_wp
+         sens%y(:, Y_SHEAR) = 0.0_wp
          return
       end if
       if (jump == JUMP_REVERSAL .and. after%depth /= before%depth) then
@@ -494,12 +495,12 @@ contains
          do j = 1, DIRECTIONS
             dr_j = dr(j, :)
             before_j = sens%r_before(j, :)
-            sens%r_in%of(j, :) = change_of_threshold(par, before, r, dr_j, before_j, sens%y(j, 13))
+            sens%r_in%of(j, :) = change_of_threshold(par, before, r, dr_j, before_j, sens%y(j, Y_SHEAR))
          end do
       end if
       sens%r_before = old_r_in
       if (jump == JUMP_NEW) sens%r_before = dr
-      sens%y(:, 13) = 0.0_wp
+      sens%y(:, Y_SHEAR) = 0.0_wp
    end subroutine jump_of_memory
 
    !> Change of r_in = r + m (r_before - r), rule threshold.
@@ -546,9 +547,9 @@ contains
       dr = changes_of_ratio(par, trial%y0(1:6), sens%y)
       sens%r_before = sens%r_in%of
       do i = 1, 6
-         sens%r_in%of(:, i) = dr(:, i) - before%x_before*(m*dn(:, i) &
-                                                       + (share_slope(par, before%eps_q_p)*trigger%n(i))*sens%y(:, 13))
+         sens%r_in%of(:, i) = dr(:, i) - before%x_before &
+                              *(m*dn(:, i) + (share_slope(par, before%eps_q_p)*trigger%n(i))*sens%y(:, Y_SHEAR))
       end do
-      sens%y(:, 13) = 0.0_wp
+      sens%y(:, Y_SHEAR) = 0.0_wp
    end subroutine reposition
 end module mud_consistent

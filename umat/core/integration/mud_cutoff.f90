@@ -12,13 +12,14 @@ module mud_cutoff
    use mud_critical_state, only: critical_void_ratio
    use mud_driving, only: driving_t, change_of_place, DIRECTIONS
    use mud_elastic, only: bulk_slope, shear_modulus, shear_slope, STIFF_ABOVE
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
    use mud_params, only: params_t
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_state, only: state_t, counters_t
    use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm
+   use mud_vector, only: NY, Y_LOG_CHI
    implicit none (type, external)
    private
    public :: MODE_HELD
@@ -256,7 +257,7 @@ contains
 
       call stress_ratio(par, y(1:6), p, r)
       virgin = y
-      virgin(14) = NO_CONTRACTION
+      virgin(Y_LOG_CHI) = NO_CONTRACTION
       call rate_of(par, inc, time, virgin, r, closing_mode(inc), w, counters)
    end subroutine rate_without_past
 

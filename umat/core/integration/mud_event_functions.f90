@@ -7,7 +7,7 @@ module mud_event_functions
    use mud_cutoff, only: rate_without_past, height, closing_function
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
       EVENT_TURN, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS, RATE_THERE, RATE_IF_CLOSED
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
    use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -16,6 +16,7 @@ module mud_event_functions
    use mud_state, only: counters_t
    use mud_tensor, only: ddot, norm, deviator
    use mud_trial, only: trial_t
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: event_function, rate_at_start, rate_at_end, place_of, elastic_rate, backwards, psi_at, &

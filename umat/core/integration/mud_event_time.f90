@@ -13,7 +13,7 @@ module mud_event_time
    use mud_event_functions, only: psi_at
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, &
       EVENT_YIELD, EVENT_MECHANISM, EVENT_FORWARDS, NO_RATE, RATE_THERE, RATE_IF_CLOSED
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of, NY
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows
@@ -23,6 +23,7 @@ module mud_event_time
    use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t
    use mud_linearise, only: linearised_t, changes_t
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: move_event

@@ -6,7 +6,7 @@ module mud_events
    use mud_event_functions, only: rate_at_end, place_of, backwards
    use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_PARTS, EVENT_CLOSES, EVENT_MECHANISM, &
       EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
-   use mud_increment, only: increment_t, rate_of, store_rate, NY
+   use mud_increment, only: increment_t, rate_of, store_rate
    use mud_integration, only: integration_t
    use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_kinds, only: wp
@@ -18,6 +18,7 @@ module mud_events
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
    use mud_trial, only: trial_t, take_step
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: stop_at_event, note_turning_point

@@ -11,19 +11,17 @@ module mud_increment
    use mud_elastic, only: centre_modulus
    use mud_fluidity, only: recovery
    use mud_rate, only: rate_t
-   use mud_rates, only: rate_at, MODE_ORDINARY, MODE_ELASTIC
+   use mud_rates, only: rate_at, conditions_t, MODE_ORDINARY, MODE_ELASTIC
    use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, &
       loading_direction, exit_share, decay_at
    use mud_substep, only: scheme_t, SCHEMES
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, end_in_domain, volume_from_centre, direction_at, void_ratio_at, &
              suction_at, rate_of, store_rate, loading_strain, changes_of_loading_strain, has_elastic_part, &
-             live_numbers, NY, SHORTEST_PHASE, STRAIGHT
+             live_numbers, SHORTEST_PHASE, STRAIGHT
 
-   !> Length of the integrated vector: sigma'(6), z(6), plastic shear, of the cyclic preloading ln chi' and, since the
-   !> substep began, contraction, and fluidity.
-   integer, parameter :: NY = 16
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
@@ -58,23 +56,22 @@ contains
       type(rate_t), intent(inout) :: w
       type(counters_t), intent(inout) :: counters
       type(rate_t), intent(in), optional :: near   !< Rate nearby, as rate_at has it.
-      real(wp) :: loading(6), aside(6), from_centre, e, g, volume
+      type(conditions_t) :: at
+      real(wp) :: loading(6), aside(6), from_centre, g, volume
 
+      at = conditions_t(inc%bonded, inc%rests, void_ratio_at(inc, time), suction_at(inc, time), r_in)
       if (has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)) then
          call loading_strain(inc, mode, time, loading, aside, from_centre)
-         e = void_ratio_at(inc, time)
-         call rate_at(par, inc%bonded, y(1:6), e, suction_at(inc, time), y(7:12), r_in, &
-                      loading, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
-         g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)
+         call rate_at(par, y, at, loading, inc%d_pc, mode, w, near)
+         g = 2.0_wp*centre_modulus(par, at%e, w%k, from_centre)
          volume = trace(aside)
          w%d_p = w%d_p + w%k*volume
          w%d_sigma = w%d_sigma + g*aside
          w%d_sigma(1:3) = w%d_sigma(1:3) + (w%k - g/3.0_wp)*volume
       else
-         call rate_at(par, inc%bonded, y(1:6), void_ratio_at(inc, time), suction_at(inc, time), y(7:12), r_in, &
-                      inc%d_strain, inc%d_pc, mode, w, near, y(14), inc%rests, y(16))
+         call rate_at(par, y, at, inc%d_strain, inc%d_pc, mode, w, near)
       end if
-      if (par%fluid) w%d_ell = w%d_ell - recovery(par, inc%d_v)*y(16)
+      if (par%fluid) w%d_ell = w%d_ell - recovery(par, inc%d_v)*y(Y_FLUIDITY)
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
       if (w%capped_d) counters%cap_d = counters%cap_d + 1
@@ -87,9 +84,9 @@ contains
    pure integer function live_numbers(par) result(n)
       type(params_t), intent(in) :: par
 
-      n = 13
-      if (par%preloading) n = 15
-      if (par%fluid) n = 16
+      n = Y_SHEAR
+      if (par%preloading) n = Y_CONTRACTION
+      if (par%fluid) n = Y_FLUIDITY
    end function live_numbers
 
    !> A rate as one of the integrated vector. sigma' [kPa], the others [-], per unit of pseudo-time.
@@ -98,11 +95,11 @@ contains
       real(wp), intent(out) :: dy(NY)
 
       dy(1:6) = w%d_sigma
-      dy(7:12) = w%d_z
-      dy(13) = w%d_eps_q
-      dy(14) = w%d_log_chi
-      dy(15) = w%d_chi_own
-      dy(16) = w%d_ell
+      dy(Y_Z:Y_Z_END) = w%d_z
+      dy(Y_SHEAR) = w%d_eps_q
+      dy(Y_LOG_CHI) = w%d_log_chi
+      dy(Y_CONTRACTION) = w%d_chi_own
+      dy(Y_FLUIDITY) = w%d_ell
    end subroutine store_rate
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.

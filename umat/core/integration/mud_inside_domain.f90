@@ -6,11 +6,12 @@ module mud_inside_domain
    use mud_driving, only: driving_t, change_of_place, DIRECTIONS
    use mud_elastic, only: bulk_modulus, pressure_root, centre_modulus, changed_centre_modulus, compressed
    use mud_fluidity, only: recovery
-   use mud_increment, only: increment_t, void_ratio_at, volume_from_centre, NY
+   use mud_increment, only: increment_t, void_ratio_at, volume_from_centre
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio, p_follows, MODE_ELASTIC
    use mud_tensor, only: IDENTITY, deviator
+   use mud_vector, only: NY, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: has_closed_form, move_inside, changes_inside
@@ -48,7 +49,7 @@ contains
       y(1:6) = deviator(y(1:6)) + (2.0_wp*h*centre_modulus(par, e, k, volume_from_centre(inc, time))) &
                *deviator(inc%d_strain) &
                + compressed(par, pressure_root(par, e, k), log(e/void_ratio_at(inc, time + h)))*IDENTITY
-      if (par%fluid) y(16) = y(16)*exp(-h*recovery(par, inc%d_v))
+      if (par%fluid) y(Y_FLUIDITY) = y(Y_FLUIDITY)*exp(-h*recovery(par, inc%d_v))
    end subroutine move_inside
 
    !> Derivatives of that vector, y0 where it begins: its start moves by `shift` in pseudo-time, its size changes by dh.
@@ -84,8 +85,10 @@ contains
          if (i <= 3) y(:, i) = y(:, i) + (dp - mean - (2.0_wp/3.0_wp*g*h)*driving%d_v)
       end do
       if (par%fluid) then
-         y(:, 16) = exp(-h*recovery(par, inc%d_v))*(y(:, 16) - (y0(16)*recovery(par, inc%d_v))*dh)
-         if (inc%d_v > 0.0_wp) y(:, 16) = y(:, 16) - (y0(16)*h*par%r_ell*exp(-h*recovery(par, inc%d_v)))*driving%d_v
+         y(:, Y_FLUIDITY) = exp(-h*recovery(par, inc%d_v)) &
+                            *(y(:, Y_FLUIDITY) - (y0(Y_FLUIDITY)*recovery(par, inc%d_v))*dh)
+         if (inc%d_v > 0.0_wp) y(:, Y_FLUIDITY) = y(:, Y_FLUIDITY) - (y0(Y_FLUIDITY)*h*par%r_ell &
+                                                                      *exp(-h*recovery(par, inc%d_v)))*driving%d_v
       end if
    end subroutine changes_inside
 end module mud_inside_domain

@@ -16,7 +16,8 @@ module mud_order
    use mud_substep, only: SECOND_ORDER, THIRD_ORDER, AS_SECOND_ORDER, LINEARLY_IMPLICIT, step_factor
    use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
    use mud_trial, only: trial_t, error_norm
-   use mud_linearise, only: linearised_t, changes_t, NRATES
+   use mud_linearise, only: linearised_t, changes_t
+   use mud_vector, only: NY, Y_SHEAR
    implicit none (type, external)
    private
    public :: choose_stepping, choose_order, next_size, LAST_SLIVER
@@ -97,7 +98,7 @@ contains
       type(trial_t), intent(inout) :: trial
       type(linearised_t) :: lin
       type(changes_t) :: changes
-      real(wp) :: y(LANES, NRATES), rates(LANES, NRATES), unmoved(LANES), of_fluidity
+      real(wp) :: y(LANES, NY), rates(LANES, NY), unmoved(LANES), of_fluidity
       integer :: j
 
       ! the strain rate is held
@@ -116,6 +117,6 @@ contains
       call changes_of_rate(par, trial%w(1), lin, .false., y, REST, REST, REST, changes, .false., rates)
       of_fluidity = 0.0_wp
       if (par%fluid) of_fluidity = growth(par, trial%w(1)%fluid)
-      trial%relaxation = new_relaxation(trial%w(1), rates(1:6, 13)/SQRT_2_3, of_fluidity)
+      trial%relaxation = new_relaxation(trial%w(1), rates(1:6, Y_SHEAR)/SQRT_2_3, of_fluidity)
    end subroutine find_relaxation
 end module mud_order

@@ -5,11 +5,11 @@
 !> stress ratio on the surface, the faster the smaller (r - r_in):n. What the stress does to L and what L does to the
 !> rates is a dyad, the stiff part of the Jacobian.
 module mud_relaxation
-   use mud_increment, only: NY
    use mud_kinds, only: wp, SQRT_2_3
    use mud_rate, only: rate_t
    use mud_substep, only: IMPLICIT_DIAGONAL, IMPLICIT_WEIGHTS
    use mud_tensor, only: IDENTITY
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: relaxation_t, relaxation_speed, new_relaxation, relax
@@ -42,11 +42,11 @@ contains
 
       relaxation%slope = slope
       relaxation%flow(1:6) = -2.0_wp*w%g*w%n - (w%k_e*w%d)*IDENTITY
-      relaxation%flow(7:12) = w%d_z/w%l
-      relaxation%flow(13) = SQRT_2_3
-      relaxation%flow(14) = w%d_log_chi/w%l
-      relaxation%flow(15) = w%d_chi_own/w%l
-      relaxation%flow(16) = growth
+      relaxation%flow(Y_Z:Y_Z_END) = w%d_z/w%l
+      relaxation%flow(Y_SHEAR) = SQRT_2_3
+      relaxation%flow(Y_LOG_CHI) = w%d_log_chi/w%l
+      relaxation%flow(Y_CONTRACTION) = w%d_chi_own/w%l
+      relaxation%flow(Y_FLUIDITY) = growth
       relaxation%speed = max(-dot_product(slope, relaxation%flow(1:6)), 0.0_wp)
    end function new_relaxation
 

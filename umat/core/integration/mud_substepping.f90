@@ -22,6 +22,7 @@ module mud_substepping
    use mud_transient, only: find_transient
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
    use mud_trial, only: take_step, error_norm
+   use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: integrate_phase
@@ -62,9 +63,9 @@ contains
          it%reached = time
          it%trial%time = time
          it%trial%y0(1:6) = it%state%sigma
-         it%trial%y0(7:12) = it%state%z
-         it%trial%y0(13:15) = 0.0_wp
-         it%trial%y0(16) = it%state%fluidity
+         it%trial%y0(Y_Z:Y_Z_END) = it%state%z
+         it%trial%y0(Y_SHEAR:Y_CONTRACTION) = 0.0_wp
+         it%trial%y0(Y_FLUIDITY) = it%state%fluidity
          call begin_substep(par, it)
          call choose_stepping(par, it%inc%to - time, max(step%h, par%h_min), it%inc, it%trial)
          call try_substep(par, step, h, it)

@@ -3,13 +3,14 @@
 !> |a|/rho, faster than anything else changes. A pair integrates what is left of the rates, the parts are integrated
 !> exactly. Whatever the parts are, the order of the pair stays; docs/theory/integration.md section 2.2.
 module mud_transient
-   use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_elastic_part, NY, STRAIGHT
+   use mud_increment, only: increment_t, rate_of, store_rate, direction_at, has_elastic_part, STRAIGHT
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
    use mud_state, only: counters_t
    use mud_tensor, only: LANES, norm
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: transient_t, fading_t, NO_FADING, find_transient, without_turn, half_way, begin_fading, &

@@ -22,6 +22,7 @@ module mud_transitions
    use mud_reversal, only: new_memory, begin_process, accept_process, note_contraction
    use mud_state, only: memory_t
    use mud_tensor, only: ddot
+   use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: begin_phase, begin_substep, accept_substep, rate_is_known
@@ -96,7 +97,7 @@ contains
       type(integration_t), intent(inout) :: it
 
       it%trial%r_in = it%state%memory%r_in
-      if (par%preloading) it%trial%y0(14) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
+      if (par%preloading) it%trial%y0(Y_LOG_CHI) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
    end subroutine take_memory
 
    !> Below what it remembers the isotropic mechanism rests. A rate that is known is that of what it did before.
@@ -242,7 +243,7 @@ contains
          it%trial%w(1)%no_root = .false.
       else
          it%trial%r_in = r
-         if (par%preloading) it%trial%y0(14) = NO_CONTRACTION
+         if (par%preloading) it%trial%y0(Y_LOG_CHI) = NO_CONTRACTION
          it%trial%mode = closing_mode(it%inc)
          call first_rate(par, it)
          it%state%open = .not. closes(it%inc, it%trial%openings, it%trial%w(1))
@@ -274,12 +275,13 @@ contains
          it%state%gap = gap_at(it%state%e, it%trial%parts)
          return
       end if
-      it%state%z = it%trial%y(7:12)
-      it%state%eps_q_total = it%state%eps_q_total + it%trial%y(13)
+      it%state%z = it%trial%y(Y_Z:Y_Z_END)
+      it%state%eps_q_total = it%state%eps_q_total + it%trial%y(Y_SHEAR)
       ! a scheme's weights may leave rounding of either sign
-      if (par%fluid) it%state%fluidity = min(max(it%trial%y(16), 0.0_wp), par%ell_max)
+      if (par%fluid) it%state%fluidity = min(max(it%trial%y(Y_FLUIDITY), 0.0_wp), par%ell_max)
       if (par%preloading) &
-         call note_contraction(it%trial%y(14) - it%trial%y0(14), it%trial%y(15), it%state%memory)
+         call note_contraction(it%trial%y(Y_LOG_CHI) - it%trial%y0(Y_LOG_CHI), it%trial%y(Y_CONTRACTION), &
+                               it%state%memory)
       if (it%inc%rests) then
          it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
          if (it%event == EVENT_YIELD) it%state%margin = 0.0_wp
@@ -291,7 +293,7 @@ contains
       if (it%event == EVENT_BOUNDS) it%trial%pressed = .true.
       if (it%trial%mode == MODE_ORDINARY) then
          associate (w => it%trial%w(latest_forwards(it)))
-            call accept_process(w%loading, w%x, it%trial%y(13), it%state%memory)
+            call accept_process(w%loading, w%x, it%trial%y(Y_SHEAR), it%state%memory)
          end associate
          if (par%memory_rule == RULE_RETURN_POINT) then
             call note_turning_point(par, h, it)

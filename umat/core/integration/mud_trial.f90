@@ -3,7 +3,7 @@
 module mud_trial
    use mud_kinds, only: wp
    use mud_cutoff, only: hold, MODE_HELD
-   use mud_increment, only: increment_t, rate_of, store_rate, NY
+   use mud_increment, only: increment_t, rate_of, store_rate
    use mud_inside_domain, only: has_closed_form, move_inside
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -12,6 +12,7 @@ module mud_trial
    use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
    use mud_tensor, only: norm
    use mud_transient, only: transient_t, take_fading, add_faded
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: trial_t, take_step, error_norm
@@ -104,10 +105,10 @@ contains
       error = 0.0_wp
       if (trial%closed) return
       call error_vector(scheme, trial%rates, h, delta)
-      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(7:12))/par%z_max, &
-                  abs(delta(13))/PLASTIC_SHEAR_SCALE)
-      if (par%fluid) error = max(error, abs(delta(16))/(1.0_wp + trial%y(16)))
+      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(Y_Z:Y_Z_END))/par%z_max, &
+                  abs(delta(Y_SHEAR))/PLASTIC_SHEAR_SCALE)
+      if (par%fluid) error = max(error, abs(delta(Y_FLUIDITY))/(1.0_wp + trial%y(Y_FLUIDITY)))
       ! in first loading nothing follows them
-      if (trial%w(1)%preloaded) error = max(error, abs(delta(14)), abs(delta(15))/CONTRACTION_SCALE)
+      if (trial%w(1)%preloaded) error = max(error, abs(delta(Y_LOG_CHI)), abs(delta(Y_CONTRACTION))/CONTRACTION_SCALE)
    end function error_norm
 end module mud_trial

@@ -16,10 +16,11 @@ module mud_linearise
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
    use mud_tensor, only: LANES, contractions, trace
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: linearised_t, linearise, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
-             linearise_mechanism, changes_of_hardening, NRATES
+             linearise_mechanism, changes_of_hardening
 
    !> Terms of a derivative of a rate that all directions share.
    type, extends(turn_t) :: linearised_t
@@ -37,8 +38,6 @@ module mud_linearise
       type(isotropic_slopes_t) :: mechanism   !< ... and slopes of the isotropic mechanism, where it acts.
       real(wp) :: on_e(4)                   !< n, h_n, d_n, gamma_n on the deviatoric strain rate
    end type linearised_t
-
-   integer, parameter :: NRATES = 16   !< sigma'(6), z(6), plastic shear, ln chi', contraction, fluidity.
 
    !> Changes of the arguments of a rate beside stress, fabric and memory.
    type :: changes_t
@@ -156,7 +155,7 @@ contains
    pure subroutine change_point(w, lin, y, changes, x)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
       real(wp) :: follows
@@ -193,7 +192,7 @@ contains
    !> a_on_r is a:r.
    pure function along_ratio(lin, y, p, a, a_on_r) result(c)
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES), p(LANES), a(6), a_on_r
+      real(wp), intent(in) :: y(LANES, NY), p(LANES), a(6), a_on_r
       real(wp) :: c(LANES)
 
       c = lin%per_p*(contractions(y(:, 1:6), a) - a_on_r*p)
@@ -203,7 +202,7 @@ contains
    pure subroutine changes_of_hardening(w, lin, y, changes, x, a, b)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(in) :: x
       real(wp), dimension(LANES), intent(out) :: a, b
@@ -228,7 +227,7 @@ contains
    pure subroutine change_of_mechanism(w, lin, y, changes, x)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
       real(wp), dimension(LANES) :: a, b

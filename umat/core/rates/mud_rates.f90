@@ -16,9 +16,10 @@ module mud_rates
    use mud_hardening, only: kinematic_modulus, isotropic_hardening, shear_weight, NO_HARDENING
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_LOG_CHI, Y_FLUIDITY
    implicit none (type, external)
    private
-   public :: rate_at, stress_ratio, p_follows, MODE_ORDINARY, MODE_ELASTIC
+   public :: rate_at, conditions_t, stress_ratio, p_follows, MODE_ORDINARY, MODE_ELASTIC
 
    integer, parameter :: MODE_ORDINARY = 0   !< Both mechanisms act.
    integer, parameter :: MODE_ELASTIC = 1    !< L = 0: inside the elastic domain.
@@ -27,6 +28,14 @@ module mud_rates
    !> at least SMALLEST_RATIO: where both deviators are rounding themselves, as in isotropic compression, theirs would
    !> not do.
    real(wp), parameter :: PURE_VOLUMETRIC = 1.0e-14_wp, SMALLEST_RATIO = 1.0e-3_wp
+
+   !> The point at which a rate is asked for, without the numbers that are integrated.
+   type :: conditions_t
+      logical :: bonded = .false.   !< Suction bonding acts in this update.
+      logical :: rests = .false.    !< The isotropic mechanism is below its memory.
+      real(wp) :: e, p_c            !< void ratio [-], suction [kPa]
+      real(wp) :: r_in(6)           !< memory [-]
+   end type conditions_t
 contains
    !> Stress ratio r = s/p' and p' >= p_min of a stress [kPa]. Compression positive; r [-], p' in the unit of sigma.
    !> docs/theory/material.md section 1.2.
@@ -51,38 +60,26 @@ contains
    !> Rates of stress, fabric and plastic shear for a strain rate and a suction rate. Compression positive, tensor
    !> shear. docs/theory/material.md sections 4 and 5; nothing is refused, w%no_root tells that no direction was found
    !> and the rate is elastic.
-   pure subroutine rate_at(par, bonded, sigma, e, p_c, z, r_in, d_strain, d_pc, mode, w, near, log_chi, rests, &
-                           ell)
+   pure subroutine rate_at(par, y, at, d_strain, d_pc, mode, w, near)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded             !< Suction bonding acts in this update.
-      real(wp), intent(in) :: sigma(6)          !< sigma' [kPa]
-      real(wp), intent(in) :: e                 !< void ratio [-]
-      real(wp), intent(in) :: p_c               !< suction [kPa]
-      real(wp), intent(in) :: z(6), r_in(6)     !< fabric, memory [-]
+      real(wp), intent(in) :: y(NY)             !< integrated vector [kPa, -]
+      type(conditions_t), intent(in) :: at
       real(wp), intent(in) :: d_strain(6)       !< strain rate [-]
       real(wp), intent(in) :: d_pc              !< suction rate [kPa]
       integer, intent(in) :: mode               !< MODE_*
       type(rate_t), intent(inout) :: w          !< All of it is set.
       type(rate_t), intent(in), optional :: near   !< A rate of nearly the same state: its direction is where to begin.
-      !> ln of the contraction that other processes have left, read with cyclic preloading; none: no contraction [-].
-      real(wp), intent(in), optional :: log_chi
-      logical, intent(in), optional :: rests       !< The isotropic mechanism is below its memory.
-      real(wp), intent(in), optional :: ell        !< Fluidity, read with that option; none: 0 [-].
       real(wp) :: d_v, d_e(6), d_norm
 
       d_v = trace(d_strain)
       d_e = deviator(d_strain)
       d_norm = norm(d_strain)
-      call evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
-      if (par%fluid .and. present(ell)) call soften(par, ell, w)
+      call evaluate_point(par, at, y(1:6), y(Y_Z:Y_Z_END), w)
+      if (par%fluid) call soften(par, y(Y_FLUIDITY), w)
       w%preloaded = .false.
-      if (par%preloading .and. present(log_chi)) then
-         w%preloaded = log_chi > NO_CONTRACTION
-         if (w%preloaded) w%chi = exp(log_chi)
-      end if
-      if (present(rests)) then
-         if (rests) w%iso = NO_HARDENING
-      end if
+      if (par%preloading) w%preloaded = y(Y_LOG_CHI) > NO_CONTRACTION
+      if (w%preloaded) w%chi = exp(y(Y_LOG_CHI))
+      if (at%rests) w%iso = NO_HARDENING
 
       call start_direction(near, w)
       w%iso_kept = .false.
@@ -106,7 +103,7 @@ contains
       end if
 
       w%d_sigma = 2.0_wp*w%g*(d_e - w%l*w%n) + w%d_p*IDENTITY
-      w%d_z = fabric_rate(par, w%l, w%d, w%n, z)
+      w%d_z = fabric_rate(par, w%l, w%d, w%n, w%z)
       w%d_eps_q = SQRT_2_3*w%l
       w%d_log_chi = 0.0_wp
       w%d_chi_own = 0.0_wp
@@ -149,32 +146,33 @@ contains
    end function is_certain
 
    !> Evaluates the parts of a rate that depend on the state alone.
-   pure subroutine evaluate_point(par, bonded, sigma, e, p_c, z, r_in, w)
+   pure subroutine evaluate_point(par, at, sigma, z, w)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
-      real(wp), intent(in) :: sigma(6), e, p_c, z(6), r_in(6)
+      type(conditions_t), intent(in) :: at
+      real(wp), intent(in) :: sigma(6), z(6)
       type(rate_t), intent(inout) :: w
       real(wp) :: weight
 
       call stress_ratio(par, sigma, w%p, w%r)
       w%r_norm = norm(w%r)
-      w%r_moved = w%r - r_in
+      w%r_moved = w%r - at%r_in
       w%z = z
-      w%k = bulk_modulus(par, e, w%p)
-      w%g = shear_modulus(par, e, w%p)
+      w%k = bulk_modulus(par, at%e, w%p)
+      w%g = shear_modulus(par, at%e, w%p)
       w%bond = UNBONDED
-      if (bonded) w%bond = bonding(par, p_c, e)
-      w%psi = state_parameter(par, w%bond%f, e, w%p)
+      if (at%bonded) w%bond = bonding(par, at%p_c, at%e)
+      w%psi = state_parameter(par, w%bond%f, at%e, w%p)
       w%m_b = bounding_ratio(par, w%psi)
       w%m_d = dilatancy_ratio(par, w%psi)
       w%a_0 = par%a_0
-      w%b_0 = kinematic_modulus(par, e, w%p)
+      w%b_0 = kinematic_modulus(par, at%e, w%p)
       w%fluid = NOT_FLUID
       w%iso = NO_HARDENING
       if (par%isotropic) then
          weight = shear_weight(w%r_norm, bounding_norm(par, w%r, w%r_norm, w%m_b))
          if (weight > 0.0_wp) then
-            w%iso = isotropic_hardening(par, w%bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*w%r_norm**2, weight)
+            w%iso = isotropic_hardening(par, w%bond, at%e, w%p, swelling_slope(w%k, at%e, w%p), 1.5_wp*w%r_norm**2, &
+                                        weight)
          end if
       end if
    end subroutine evaluate_point

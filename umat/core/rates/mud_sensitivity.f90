@@ -11,13 +11,14 @@ module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
    use mud_linearise, only: linearised_t, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
-      linearise_mechanism, changes_of_hardening, NRATES
+      linearise_mechanism, changes_of_hardening
    use mud_rate, only: rate_t
    use mud_tensor, only: LANES, tensors_t, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: loading_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
    use mud_fluidity, only: growth, growth_slopes
    use mud_hardening, only: KINEMATIC_EXPONENT
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: changes_of_rate, changes_of_drive, changes_of_iso_drive
@@ -31,12 +32,12 @@ contains
       type(linearised_t), intent(in) :: lin
       logical, intent(in) :: at_rest                  !< y, r_in and the changes of e and p_c are zero
       !> Changes of sigma', z, ln chi', fluidity and, without effect, plastic shear and contraction [kPa, -, -].
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(tensors_t), intent(in) :: r_in             !< changes of the memory [-]
       type(tensors_t), intent(in) :: strain, centre   !< changes of strain rate and elastic domain [-]
       type(changes_t), intent(in) :: changes
       logical, intent(in) :: stress_only              !< rates of fabric and plastic shear are not asked for: zeros
-      real(wp), intent(out) :: rates(LANES, NRATES)   !< changes of the rates, as y
+      real(wp), intent(out) :: rates(LANES, NY)   !< changes of the rates, as y
       real(wp), intent(out), optional :: dn(LANES, 6)
       type(lanes_t) :: x
 
@@ -55,22 +56,24 @@ contains
          x%flow = 0.0_wp
       end if
       call fill_stress(w, lin, y, strain, centre, changes, x, rates(:, 1:6))
-      rates(:, 7:) = 0.0_wp
+      rates(:, Y_Z:) = 0.0_wp
       if (w%loading .and. .not. stress_only) then
-         rates(:, 13) = SQRT_2_3*x%dl
+         rates(:, Y_SHEAR) = SQRT_2_3*x%dl
          if (par%preloading) then
             if (w%d < 0.0_wp) then
-               rates(:, 14) = par%zeta_chi*x%flow
+               rates(:, Y_LOG_CHI) = par%zeta_chi*x%flow
             else
-               rates(:, 15) = x%flow
+               rates(:, Y_CONTRACTION) = x%flow
             end if
          end if
          if (par%fluid) then
             associate (slopes => growth_slopes(par, w%fluid))
-               rates(:, 16) = growth(par, w%fluid)*x%dl + w%l*(slopes(1)*x%p + slopes(2)*y(:, 16))
+               rates(:, Y_FLUIDITY) = growth(par, w%fluid)*x%dl + w%l*(slopes(1)*x%p + slopes(2)*y(:, Y_FLUIDITY))
             end associate
          end if
-         if (par%fabric .and. w%d < 0.0_wp) call fill_fabric(par, w, y, strain, centre, changes, x, rates(:, 7:12))
+         if (par%fabric .and. w%d < 0.0_wp) then
+            call fill_fabric(par, w, y, strain, centre, changes, x, rates(:, Y_Z:Y_Z_END))
+         end if
       end if
       if (.not. present(dn)) return
       dn = 0.0_wp
@@ -82,7 +85,7 @@ contains
    pure function changes_of_drive(w, lin, y, strain, centre, changes) result(c)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES)   !< changes of sigma', z and, without effect, plastic shear [kPa, -, -]
+      real(wp), intent(in) :: y(LANES, NY)   !< changes of sigma', z and, without effect, plastic shear [kPa, -, -]
       type(tensors_t), intent(in) :: strain, centre   !< changes of strain rate and elastic domain [-]
       type(changes_t), intent(in) :: changes
       real(wp) :: c(LANES)
@@ -102,7 +105,7 @@ contains
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: e
-      real(wp), intent(in) :: y(LANES, NRATES), rates(LANES, NRATES)   !< as in changes_of_rate
+      real(wp), intent(in) :: y(LANES, NY), rates(LANES, NY)   !< as in changes_of_rate
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
       real(wp) :: c(LANES)
@@ -128,7 +131,7 @@ contains
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(tensors_t), intent(in) :: r_in
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(inout) :: x
@@ -147,20 +150,20 @@ contains
          x%dh = per_p*x%share + (s%h_b_0*w%b_0*lin%b_slope)*changes%e + s%h_g*x%g + s%h_k*x%k_e &
                 + (s%h_r + s%h_x)*x%n_dr + (s%h_r_d*r_d_psi)*x%psi + (s%h_r_b*r_b_m)*x%m_b
          if (abs(s%d_z) > 0.0_wp) then
-            n_dz = contractions(y(:, 7:12), w%n)
+            n_dz = contractions(y(:, Y_Z:Y_Z_END), w%n)
             x%dd = x%dd + s%d_z*n_dz
             x%dh = x%dh + s%h_z*n_dz
          end if
          if (s%h_x > 0.0_wp .and. r_in%kind /= ZERO_TENSORS) x%dh = x%dh - s%h_x*contracted(r_in, w%n)
          if (par%fluid) then
-            q = w%fluid%by_p*x%p + w%fluid%by_ell*y(:, 16)
+            q = w%fluid%by_p*x%p + w%fluid%by_ell*y(:, Y_FLUIDITY)
             x%dd = x%dd + s%d_ln*q
             x%dh = x%dh + s%h_ln*q
          end if
          if (w%preloaded) then
             ! of ln(w/chi') with M^d/M^b, b_0 and chi'
             q = (dilatancy_slope(par, w%m_d)/w%m_d)*x%psi - x%m_b/w%m_b - KINEMATIC_EXPONENT*x%share &
-                - lin%b_slope*changes%e - y(:, 14)
+                - lin%b_slope*changes%e - y(:, Y_LOG_CHI)
             x%dd = x%dd + s%d_q*q + s%d_x*x%n_dr
             x%dh = x%dh + s%h_q*q
             if (r_in%kind /= ZERO_TENSORS) x%dd = x%dd - s%d_x*contracted(r_in, w%n)
@@ -232,7 +235,7 @@ contains
    pure subroutine fill_stress(w, lin, y, strain, centre, changes, x, rates)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(in) :: x
@@ -274,7 +277,7 @@ contains
    pure subroutine fill_fabric(par, w, y, strain, centre, changes, x, rates)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
       type(lanes_t), intent(in) :: x
@@ -304,7 +307,7 @@ contains
    !> The sum of what s says. strain and centre are the changes [-] that the loading refers to, y has those of stress.
    pure subroutine add_up(w, y, strain, centre, changes, s, total)
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: y(LANES, NRATES)
+      real(wp), intent(in) :: y(LANES, NY)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
       type(sum_t), intent(in) :: s
