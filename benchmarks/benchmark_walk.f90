@@ -3,7 +3,7 @@
 module benchmark_walk
    use, intrinsic :: iso_c_binding, only: c_int, c_long, c_double, c_null_char, c_loc
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_bonding, only: is_bonded
+   use mud_bonding, only: suction_law_t, is_bonded, bonding
    use mud_interface, only: mud_default_props, mud_prepared_size, mud_prepare, mud_init, mud_update, &
       mud_update_points, mud_points, mud_blocks, mud_index, mud_count, mud_report, MUD_PROPS, &
       MUD_STATEV, MUD_TANGENT_NONE
@@ -230,6 +230,7 @@ contains
          r_in(6), checksum
       type(params_t) :: par
       type(conditions_t) :: at
+      type(suction_law_t) :: law
       type(mud_status_t) :: status
       type(rate_t) :: w
       type(mud_report) :: report
@@ -249,7 +250,9 @@ contains
       r_in = statev(memory + 1:memory + 6)
       d_strain = -path%to*[1.0_wp, 1.0_wp, 1.0_wp, 0.5_wp, 0.5_wp, 0.5_wp]
       d_pc = path%d_suction
-      at = conditions_t(is_bonded(par, path%suction), .false., path%void_ratio, path%suction, r_in)
+      law = par%suction
+      law%bonds = is_bonded(law, path%suction)
+      at = conditions_t(bond=bonding(law, path%suction, path%void_ratio), e=path%void_ratio, r_in=r_in)
       checksum = 0.0_wp
       before = now(OF_THIS_THREAD)
       do i = 1, evaluations
@@ -329,7 +332,7 @@ contains
       type(rate_t), intent(inout) :: w
 
       call rate_at(this%par, [this%stress, this%z, NO_EFFECTS], &
-                   conditions_t(e=this%void_ratio, p_c=0.0_wp, r_in=this%r_in), &
+                   conditions_t(e=this%void_ratio, r_in=this%r_in), &
                    this%d_strain, 0.0_wp, MODE_ORDINARY, w)
    end subroutine evaluate
 

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Material, start and path of one point, as the contract tests use them.
 module path_tools
-   use mud_bonding, only: is_bonded
+   use mud_bonding, only: suction_law_t, is_bonded, bonding
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, default_props
@@ -17,11 +17,12 @@ module path_tools
    use mud_trace, only: trace_t
    use random_states, only: random_t, uniform
    use mud_preloading, only: NO_CONTRACTION
+   use mud_retention, only: retention_t
    use mud_vector, only: NY, Y_Z, Y_Z_END, Y_LOG_CHI, Y_FLUIDITY
    implicit none (type, external)
    private
    public :: material, isotropic, general_start, update_between, advance, rate_of_state, undrained, axial_only, &
-             triaxial, mean_stress, shear_stress, distance, full, rotation, vector_of
+             triaxial, mean_stress, shear_stress, distance, full, rotation, vector_of, suction_law, retention_with
 
 contains
    !> The parameters of the paper, so without elastic domain, with some entries changed; an entry that is not accepted
@@ -150,11 +151,36 @@ contains
       type(state_t), intent(in) :: state
       real(wp), intent(in) :: d_strain(6), d_pc
       type(rate_t) :: w
+      type(suction_law_t) :: law
 
+      law = par%suction
+      law%bonds = is_bonded(law, max(state%p_c, state%p_c + d_pc))
       call rate_at(par, vector_of(state%sigma, state%z), &
-                   conditions_t(is_bonded(par, max(state%p_c, state%p_c + d_pc)), .false., state%e, state%p_c, &
-                                state%memory%r_in), d_strain, d_pc, MODE_ORDINARY, w)
+                   conditions_t(bond=bonding(law, state%p_c, state%e), e=state%e, r_in=state%memory%r_in), &
+                   d_strain, d_pc, MODE_ORDINARY, w)
    end function rate_of_state
+
+   !> What suction does to such a material.
+   function suction_law(entries, values) result(law)
+      integer, intent(in), optional :: entries(:)
+      real(wp), intent(in), optional :: values(:)
+      type(suction_law_t) :: law
+      type(params_t) :: par
+
+      par = material(entries, values)
+      law = par%suction
+   end function suction_law
+
+   !> The retention of such a material.
+   function retention_with(entries, values) result(retention)
+      integer, intent(in), optional :: entries(:)
+      real(wp), intent(in), optional :: values(:)
+      type(retention_t) :: retention
+      type(suction_law_t) :: law
+
+      law = suction_law(entries, values)
+      retention = law%retention_t
+   end function retention_with
 
    !> The integrated vector of stress [kPa] and fabric, of ln of the contraction that others left, and of a fluidity.
    pure function vector_of(sigma, z, log_chi, ell) result(y)

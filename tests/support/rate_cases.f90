@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Random arguments of a rate, by kind of state, for tests of derivatives.
 module rate_cases
+   use mud_bonding, only: suction_law_t, bonding
    use mud_kinds, only: wp
    use mud_params, only: params_t, read_params, default_props
    use mud_critical_state, only: bounding_norm
@@ -13,7 +14,7 @@ module rate_cases
    use random_states, only: random_t, uniform, log_uniform, random_tensor, random_deviator
    implicit none (type, external)
    private
-   public :: case_t, random_case, rising_case, evaluate, same_branch
+   public :: case_t, random_case, rising_case, evaluate, same_branch, law_in
 
    !> A rate's arguments.
    type :: case_t
@@ -40,9 +41,18 @@ contains
       type(rate_t), intent(in), optional :: near   !< as rate_at has it
 
       call rate_at(this%par, vector_of(this%sigma, this%z), &
-                   conditions_t(this%p_c > 0.0_wp, .false., this%e, this%p_c, this%r_in), d_strain, d_pc, &
-                   this%mode, w, near)
+                   conditions_t(bond=bonding(law_in(this), this%p_c, this%e), e=this%e, r_in=this%r_in), &
+                   d_strain, d_pc, this%mode, w, near)
    end subroutine evaluate
+
+   !> The suction law of its phase, which bonds where there is suction.
+   pure function law_in(this) result(law)
+      type(case_t), intent(in) :: this
+      type(suction_law_t) :: law
+
+      law = this%par%suction
+      law%bonds = this%p_c > 0.0_wp
+   end function law_in
 
    !> A random state of a kind, with stress ratios up to and beyond the bounding surface.
    function random_case(random, kind) result(this)

@@ -23,14 +23,14 @@ STATE = [
     (CORE + "base/mud_registry.f90", "      variable_t(S_STACK + 0, 6, 'memory_1'",
      "      variable_t(S_TRIAL, 1, 'trial', 'T', '1', .false., 'ours', 'steps of the trial', '0', 'adds up'), &\n"
      "      variable_t(S_STACK + 0, 6, 'memory_1'"),
-    (CORE + "base/mud_state.f90", "use mud_registry, only: NSTATV,", "use mud_registry, only: S_TRIAL, NSTATV,"),
-    (CORE + "base/mud_state.f90", "      real(wp) :: p_c          !<",
+    (CORE + "laws/mud_state.f90", "use mud_registry, only: NSTATV,", "use mud_registry, only: S_TRIAL, NSTATV,"),
+    (CORE + "laws/mud_state.f90", "      real(wp) :: p_c          !<",
      "      real(wp) :: trial\n      real(wp) :: p_c          !<"),
-    (CORE + "base/mud_state.f90", "      call require(statev, S_VOID_RATIO,",
+    (CORE + "laws/mud_state.f90", "      call require(statev, S_VOID_RATIO,",
      "      call require(statev, S_TRIAL, 0.0_wp, huge(1.0_wp), status)\n      call require(statev, S_VOID_RATIO,"),
-    (CORE + "base/mud_state.f90", "      state%s_w = statev(S_SATURATION)\n",
+    (CORE + "laws/mud_state.f90", "      state%s_w = statev(S_SATURATION)\n",
      "      state%trial = statev(S_TRIAL)\n      state%s_w = statev(S_SATURATION)\n"),
-    (CORE + "base/mud_state.f90", "      statev(S_SATURATION) = state%s_w\n",
+    (CORE + "laws/mud_state.f90", "      statev(S_SATURATION) = state%s_w\n",
      "      statev(S_TRIAL) = state%trial\n      statev(S_SATURATION) = state%s_w\n"),
     (CORE + "integration/mud_start.f90", "      state%p_c = p_c\n",
      "      state%trial = 0.0_wp\n      state%p_c = p_c\n")]
@@ -42,10 +42,10 @@ PARAMETER = [
      "      property_t(P_TRIAL, 'trial_step', '-', '1', KIND_REAL, 0.0_wp, 9.0_wp, 1.0_wp, 'ours', &\n"
      "         'step of the trial'), &\n"
      "      property_t(P_SHEAR_ORDER,"),
-    (CORE + "base/mud_params.f90", "P_RHO_E, P_SHEAR_ORDER,", "P_RHO_E, P_TRIAL, P_SHEAR_ORDER,"),
-    (CORE + "base/mud_params.f90", "      real(wp) :: rho_e     !<",
+    (CORE + "laws/mud_params.f90", "P_RHO_E, P_SHEAR_ORDER,", "P_RHO_E, P_TRIAL, P_SHEAR_ORDER,"),
+    (CORE + "laws/mud_params.f90", "      real(wp) :: rho_e     !<",
      "      real(wp) :: trial_step\n      real(wp) :: rho_e     !<"),
-    (CORE + "base/mud_params.f90", "      params%rho_e = props(P_RHO_E)\n",
+    (CORE + "laws/mud_params.f90", "      params%rho_e = props(P_RHO_E)\n",
      "      params%rho_e = props(P_RHO_E)\n      params%trial_step = props(P_TRIAL)\n")]
 # The physics: every update adds a step.
 PHYSICS = [(CORE + "integration/mud_start.f90", "      if (.not. present(blocks)) return\n",

@@ -97,7 +97,7 @@ contains
       real(wp) :: p, r(6), f
 
       call stress_ratio(par, -stress, p, r)
-      f = bonding_factor(par, statev(S_SUCTION), statev(S_SATURATION))
+      f = bonding_factor(par%suction, statev(S_SUCTION), statev(S_SATURATION))
       crowding = p/compression_image(par, f, statev(S_VOID_RATIO))*(1.0_wp + 3.0_wp*ddot(r, r)/par%m_c**2)
    end function crowding
 

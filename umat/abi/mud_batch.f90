@@ -253,7 +253,7 @@ contains
       e = void_ratio
       if (abs(e) <= 0.0_wp) e = par%e_0
       if (e <= E_LOWER .or. e >= E_UPPER) return
-      sat = saturation(par, suction, e)
+      sat = saturation(par%suction%retention_t, suction, e)
       s_w = sat%s_w
       if (par%hysteresis .and. preset > 0.0_wp) s_w = preset
    end function first_saturation

@@ -247,7 +247,7 @@ contains
          call c_f_pointer(props, values, [max(n_props, 0)])
          call read_params(values, par, status)
          if (status%code == MUD_OK) call check_bounds(completed(values), 1, NPROPS, status)
-         if (status%code == MUD_OK .and. par%hysteresis) call check_curves(par, status)
+         if (status%code == MUD_OK .and. par%hysteresis) call check_curves(par%suction%retention_t, status)
       else
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       end if

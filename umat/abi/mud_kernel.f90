@@ -230,7 +230,7 @@ contains
       else
          call unpack_state(statev, par%options_t, state, status)
          if (par%hysteresis .and. status%code == MUD_OK) then
-            call check_saturation(par, state%p_c, state%e, state%s_w, status)
+            call check_saturation(par%suction%retention_t, state%p_c, state%e, state%s_w, status)
          end if
          call keep_totals(statev_size(par%options_t), statev, packed)
          state%sigma = -stress
@@ -276,7 +276,7 @@ contains
          if (abs(e) <= 0.0_wp) e = par%e_0
       end if
       packed = 0.0_wp
-      if (par%hysteresis) call check_curves(par, status)
+      if (par%hysteresis) call check_curves(par%suction%retention_t, status)
       if (status%code /= MUD_OK) return
       call initial_state(par, -stress, e, suction, state, status, s_w)
       if (status%code == MUD_OK) call check_strength(par, state, status)

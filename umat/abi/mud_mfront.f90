@@ -250,7 +250,7 @@ contains
          if (past) suction(1) = point%state0(S_SUCTION)
          e = point%state0(S_VOID_RATIO)
          if (e <= E_LOWER .or. e >= E_UPPER) e = par%e_0   ! none is given; a wrong one is refused by the update
-         sat = saturation(par, suction(1), e)
+         sat = saturation(par%suction%retention_t, suction(1), e)
          if (past .and. abs(point%state0(S_SATURATION) - sat%s_w) > SAME_SATURATION) &
             status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, point%state0(S_SATURATION), &
                           sat%s_w - SAME_SATURATION, sat%s_w + SAME_SATURATION)

@@ -67,8 +67,8 @@ contains
          call c_f_pointer(storage, material)
          call read_params(values, par, status)
          if (status%code == MUD_OK .and. par%hysteresis) then
-            call check_curves(par, status)
-            par%least = find_least(par)
+            call check_curves(par%suction%retention_t, status)
+            par%suction%least = find_least(par%suction%retention_t)
          end if
          material%head = 0
          material%tail = 0

@@ -6,7 +6,7 @@ module mud_retention_point
    use mud_prepared, only: prepared_t, find_prepared
    use mud_params, only: params_t
    use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_GAP, S_SATURATION, S_SUCTION
-   use mud_retention, only: saturation_t, saturation, log_suction
+   use mud_retention, only: retention_t, saturation_t, saturation, log_suction
    use mud_scanning, only: path_t, keep_turns, saturation_after, check_saturation
    use mud_state, only: state_t, unpack_state, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_BAD_STATE, ON_STATEV, &
@@ -37,7 +37,7 @@ contains
       if (.not. is_finite(void_ratio)) return
       if (.not. void_ratio > 0.0_c_double) return
       mud_saturation = MUD_OK
-      sat = saturation(material%par, suction, void_ratio)
+      sat = saturation(material%par%suction%retention_t, suction, void_ratio)
       call put_real(sat%s_w, s_w)
       call put_real(sat%ds_dpc, ds_dpc)
       call put_real(sat%ds_de, ds_de)
@@ -71,7 +71,7 @@ contains
       else if (par%hysteresis) then
          call scanned_saturation(par, statev, suction, sat, status)
       else
-         sat = saturation(par, suction, statev(S_VOID_RATIO))
+         sat = saturation(par%suction%retention_t, suction, statev(S_VOID_RATIO))
       end if
    end subroutine state_saturation
 
@@ -84,14 +84,15 @@ contains
       type(mud_status_t), intent(out) :: status
       type(state_t) :: state
       type(path_t) :: path
-      type(params_t) :: branch
+      type(retention_t) :: branch
       logical :: cleared
 
       call unpack_state(statev, par%options_t, state, status)
-      if (status%code == MUD_OK) call check_saturation(par, state%p_c, state%e, state%s_w, status)
+      if (status%code == MUD_OK) call check_saturation(par%suction%retention_t, state%p_c, state%e, &
+                                                             state%s_w, status)
       if (status%code /= MUD_OK) return
-      path = path_t(log_suction(par, state%p_c, state%e), state%s_w, state%turns)
-      call keep_turns(par, path, cleared)
-      call saturation_after(par, suction, state%e, path, sat, branch)
+      path = path_t(log_suction(par%suction%retention_t, state%p_c, state%e), state%s_w, state%turns)
+      call keep_turns(par%suction%retention_t, path, cleared)
+      call saturation_after(par%suction%retention_t, suction, state%e, path, sat, branch)
    end subroutine scanned_saturation
 end module mud_retention_point

@@ -9,7 +9,7 @@ module mud_branches
    use mud_integration, only: integration_t
    use mud_params, only: params_t
    use mud_registry, only: MAX_TURNS
-   use mud_retention, only: saturation_t, change_with_turn, log_suction, curve_at
+   use mud_retention, only: retention_t, saturation_t, change_with_turn, log_suction, curve_at
    use mud_scanning, only: path_t, move_along, list_passed, branch_of, begin_at_turn, saturation_after, &
                            keep_turns, find_least
    use mud_state, only: state_t, counters_t
@@ -25,8 +25,7 @@ module mud_branches
    type :: course_t
       real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
       real(wp) :: log_turn, log_end   !< ln(x/P_a) there and at the end [-].
-      type(params_t) :: material      !< Without a branch.
-      type(params_t) :: branch        !< Parameters whose saturation is that of the present branch.
+      type(retention_t) :: material   !< Without a branch.
       type(path_t) :: path    !< Where x began to go the way that it goes: at the start, or at the turn.
       logical :: turned
       real(wp) :: slope       !< dS_w/d ln x where it turned, of the branch before [-].
@@ -37,34 +36,34 @@ contains
    !> which is counted. docs/theory/material.md section 2.1.1.
    pure subroutine begin_course(par, inc, state, counters, course)
       type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
+      type(increment_t), intent(inout) :: inc   !< It gets the branch at the start.
       type(state_t), intent(in) :: state
       type(counters_t), intent(inout) :: counters
       type(course_t), intent(out) :: course
       logical :: cleared
 
-      course%material = par
-      if (.not. par%least%known) course%material%least = find_least(par)
-      course%path = path_t(log_at(par, inc, 0.0_wp), state%s_w, state%turns)
+      course%material = par%suction%retention_t
+      if (.not. course%material%least%known) course%material%least = find_least(course%material)
+      course%path = path_t(log_at(course%material, inc, 0.0_wp), state%s_w, state%turns)
       call keep_turns(course%material, course%path, cleared)
       if (cleared) counters%cleared = counters%cleared + 1
       course%turned = .false.
       course%slope = 0.0_wp
       course%with_increment = 0.0_wp
-      course%turn = turn_of_suction(par%omega, inc)
+      course%turn = turn_of_suction(course%material%omega, inc)
       if (course%turn < SHORTEST_PHASE .or. course%turn > 1.0_wp - SHORTEST_PHASE) course%turn = 1.0_wp
-      course%log_turn = log_at(par, inc, course%turn)
-      course%log_end = log_at(par, inc, 1.0_wp)
-      course%branch = branch_of(course%material, course%path)
+      course%log_turn = log_at(course%material, inc, course%turn)
+      course%log_end = log_at(course%material, inc, 1.0_wp)
+      inc%suction%retention_t = branch_of(course%material, course%path)
    end subroutine begin_course
 
    !> ln(x/P_a) at a pseudo-time [-].
-   pure real(wp) function log_at(par, inc, time)
-      type(params_t), intent(in) :: par
+   pure real(wp) function log_at(material, inc, time)
+      type(retention_t), intent(in) :: material
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time
 
-      log_at = log_suction(par, suction_at(inc, time), void_ratio_at(inc, time))
+      log_at = log_suction(material, suction_at(inc, time), void_ratio_at(inc, time))
    end function log_at
 
    !> e^-Omega dx/dt [kPa], t the share of the increment.
@@ -106,7 +105,7 @@ contains
       type(course_t), intent(in) :: course
       real(wp), intent(out) :: times(MAX_KINKS)   !< Times of the kinks; entries beyond n have no meaning [-].
       integer, intent(out) :: n
-      type(params_t) :: branch
+      type(retention_t) :: branch
       type(path_t) :: path
       type(saturation_t) :: sat
 
@@ -121,9 +120,9 @@ contains
    end subroutine list_kinks
 
    !> Lists the kinks on a way of x in one direction.
-   pure subroutine list_on_way(inc, par, start, from, to, log_to, times, n)
+   pure subroutine list_on_way(inc, material, start, from, to, log_to, times, n)
       type(increment_t), intent(in) :: inc
-      type(params_t), intent(in) :: par
+      type(retention_t), intent(in) :: material
       type(path_t), intent(in) :: start
       real(wp), intent(in) :: from, to, log_to   !< Pseudo-times of the way; ln x at its end [-].
       real(wp), intent(inout) :: times(MAX_KINKS)
@@ -137,40 +136,40 @@ contains
       before = from
       do i = 1, k + 1
          behind = to
-         if (i <= k) behind = time_of_passing(par, inc, from, to, passed(i))
-         call list_contacts(inc, par, start, before, behind, times, n)
+         if (i <= k) behind = time_of_passing(material, inc, from, to, passed(i))
+         call list_contacts(inc, material, start, before, behind, times, n)
          if (i <= k) call add_time(behind, times, n)
          before = behind
       end do
    end subroutine list_on_way
 
    !> Lists the kinks between two turning points that are passed: places where another curve is followed.
-   pure subroutine list_contacts(inc, par, start, from, to, times, n)
+   pure subroutine list_contacts(inc, material, start, from, to, times, n)
       type(increment_t), intent(in) :: inc
-      type(params_t), intent(in) :: par
+      type(retention_t), intent(in) :: material
       type(path_t), intent(in) :: start
       real(wp), intent(in) :: from, to
       real(wp), intent(inout) :: times(MAX_KINKS)
       integer, intent(inout) :: n
-      type(params_t) :: branch
+      type(retention_t) :: branch
       type(path_t) :: path
       real(wp) :: before, behind, last, middle
       integer :: curve, at_last, i, k
 
       path = start
-      call move_along(par, log_at(par, inc, 0.5_wp*(from + to)), path)
-      branch = branch_of(par, path)
+      call move_along(material, log_at(material, inc, 0.5_wp*(from + to)), path)
+      branch = branch_of(material, path)
       before = from + INSIDE*(to - from)
       last = to - INSIDE*(to - from)
       if (min(suction_at(inc, before), suction_at(inc, last)) <= 0.0_wp) return
-      curve = curve_at(branch, log_at(par, inc, before))
-      at_last = curve_at(branch, log_at(par, inc, last))
+      curve = curve_at(branch, log_at(material, inc, before))
+      at_last = curve_at(branch, log_at(material, inc, last))
       do k = 1, MAX_TURNS
          if (curve == at_last) return
          behind = last
          do i = 1, HALVINGS
             middle = 0.5_wp*(before + behind)
-            if (curve_at(branch, log_at(par, inc, middle)) == curve) then
+            if (curve_at(branch, log_at(material, inc, middle)) == curve) then
                before = middle
             else
                behind = middle
@@ -178,7 +177,7 @@ contains
          end do
          call add_time(behind, times, n)
          before = behind
-         curve = curve_at(branch, log_at(par, inc, before))
+         curve = curve_at(branch, log_at(material, inc, before))
       end do
    end subroutine list_contacts
 
@@ -193,20 +192,20 @@ contains
    end subroutine add_time
 
    !> Pseudo-time in a range at which ln(x/P_a), which goes one way there, has a value [-].
-   pure real(wp) function time_of_passing(par, inc, from, to, log_x) result(time)
-      type(params_t), intent(in) :: par
+   pure real(wp) function time_of_passing(material, inc, from, to, log_x) result(time)
+      type(retention_t), intent(in) :: material
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: from, to, log_x
       real(wp) :: before, middle
       logical :: dries
       integer :: i
 
-      dries = log_at(par, inc, to) > log_at(par, inc, from)
+      dries = log_at(material, inc, to) > log_at(material, inc, from)
       before = from
       time = to
       do i = 1, HALVINGS
          middle = 0.5_wp*(before + time)
-         if (dries .eqv. log_at(par, inc, middle) < log_x) then
+         if (dries .eqv. log_at(material, inc, middle) < log_x) then
             before = middle
          else
             time = middle
@@ -217,25 +216,26 @@ contains
    !> The branch of the phase between two pseudo-times; its middle tells what x has passed.
    pure subroutine take_branch(from, to, course, it)
       real(wp), intent(in) :: from, to
-      type(course_t), intent(inout) :: course
+      type(course_t), intent(in) :: course
       type(integration_t), intent(inout) :: it
 
-      call follow(log_at(course%material, it%inc, 0.5_wp*(from + to)), course)
-      if (it%consistent) it%sens%driving%scans = course%branch%scanning%moves
+      call follow(log_at(course%material, it%inc, 0.5_wp*(from + to)), course, it%inc%suction%retention_t)
+      if (it%consistent) it%sens%driving%scans = it%inc%suction%scanning%moves
    end subroutine take_branch
 
    !> The branch on which x goes to a value [-].
-   pure subroutine follow(log_x, course)
+   pure subroutine follow(log_x, course, branch)
       real(wp), intent(in) :: log_x
-      type(course_t), intent(inout) :: course
+      type(course_t), intent(in) :: course
+      type(retention_t), intent(out) :: branch
       type(path_t) :: path
 
       path = course%path
       call move_along(course%material, log_x, path)
       if (begins_at_turn(course, path)) then
-         course%branch = begin_at_turn(course%material, path, course%slope)
+         branch = begin_at_turn(course%material, path, course%slope)
       else
-         course%branch = branch_of(course%material, path)
+         branch = branch_of(course%material, path)
       end if
    end subroutine follow
 
@@ -254,10 +254,11 @@ contains
       type(course_t), intent(inout) :: course
       type(integration_t), intent(inout) :: it
       type(saturation_t) :: sat
+      type(retention_t) :: branch
       real(wp) :: p_c
 
       p_c = suction_at(it%inc, course%turn)
-      call saturation_after(course%material, p_c, void_ratio_at(it%inc, course%turn), course%path, sat, course%branch)
+      call saturation_after(course%material, p_c, void_ratio_at(it%inc, course%turn), course%path, sat, branch)
       course%slope = sat%ds_dpc*p_c
       course%turned = .true.
       course%with_increment = course%turn*slopes_of_suction(it%inc, course%turn, course%material%omega)
@@ -268,12 +269,12 @@ contains
    !> S_w and turning points at the end, the branch there, and what the turn adds to the slopes of S_w.
    !> docs/theory/material.md section 2.1.1.
    pure subroutine end_course(inc, course, state, with_turn)
-      type(increment_t), intent(in) :: inc
-      type(course_t), intent(inout) :: course
+      type(increment_t), intent(inout) :: inc   !< It gets the branch at the end.
+      type(course_t), intent(in) :: course
       type(state_t), intent(inout) :: state
       real(wp), intent(out) :: with_turn(2)   !< By suction step and volume [1/kPa, -].
       type(saturation_t) :: sat
-      type(params_t) :: branch
+      type(retention_t) :: branch
       type(path_t) :: path
       real(wp) :: p_c, e, change(3)
 
@@ -284,10 +285,10 @@ contains
       state%s_w = path%s_w
       state%turns = path%turns
       with_turn = 0.0_wp
-      course%branch = branch
+      inc%suction%retention_t = branch
       if (.not. begins_at_turn(course, path)) return
-      course%branch = begin_at_turn(course%material, path, course%slope)
-      change = change_with_turn(course%branch, p_c, e)
+      inc%suction%retention_t = begin_at_turn(course%material, path, course%slope)
+      change = change_with_turn(inc%suction%retention_t, p_c, e)
       with_turn = change(1)*course%with_increment
    end subroutine end_course
 end module mud_branches

@@ -400,7 +400,7 @@ contains
       type(loading_t), intent(in) :: loading   !< loading part of the strain rate there
       type(linearised_t), intent(inout) :: lin
 
-      call linearise(par, inc%bonded, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin)
+      call linearise(par, inc%suction, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin)
    end subroutine linearise_stage
 
    !> Changes of the arguments of a rate, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.

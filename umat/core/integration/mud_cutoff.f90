@@ -7,6 +7,7 @@
 !> contractive side could never leave, in whatever direction it is sheared. docs/theory/material.md section 6.
 module mud_cutoff
    use mud_kinds, only: wp
+   use mud_bonding, only: suction_law_t
    use mud_bounding, only: psi_of, change_of_psi, excess, change_of_excess, limited, &
       change_of_limited
    use mud_critical_state, only: critical_void_ratio
@@ -42,15 +43,15 @@ module mud_cutoff
 contains
    !> A stress whose mean is below p_min, as at a free surface: p_min, with a stress ratio on or inside the bounding
    !> surface. sigma' and p_c in the unit of p_atm, compression positive, e [-]. docs/theory/material.md section 1.4.
-   pure function lifted(par, bonded, sigma, e, p_c)
+   pure function lifted(par, law, sigma, e, p_c)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
+      type(suction_law_t), intent(in) :: law
       real(wp), intent(in) :: sigma(6), e, p_c
       real(wp) :: lifted(6)
 
       lifted = sigma
       if (trace(sigma) >= 3.0_wp*par%p_min*(1.0_wp - AT_LIMIT)) return
-      lifted = par%p_min*(IDENTITY + limited(par, psi_of(par, bonded, e, p_c, par%p_min), deviator(sigma)/par%p_min))
+      lifted = par%p_min*(IDENTITY + limited(par, psi_of(par, law, e, p_c, par%p_min), deviator(sigma)/par%p_min))
    end function lifted
 
    !> True where the cut-off does not let a mean stress be. sigma' in the unit of p_atm. docs/theory/material.md section
@@ -227,14 +228,14 @@ contains
       e = soil_void_ratio(state)
       follows = merge(0.0_wp, 1.0_wp, state%gap > 0.0_wp)
       r = deviator(state%sigma)/par%p_min
-      sliding = slides(par, inc%bonded, e, state%p_c, r, follows, inc%d_strain, inc%d_pc)
+      sliding = slides(par, inc%suction, e, state%p_c, r, follows, inc%d_strain, inc%d_pc)
       do j = 1, 6
          unit = 0.0_wp
          unit(j) = merge(1.0_wp, 0.5_wp, j <= 3)
-         dsig_deps(:, j) = par%p_min*held_rate(par, inc%bonded, e, state%p_c, r, follows, sliding, unit, 0.0_wp)
+         dsig_deps(:, j) = par%p_min*held_rate(par, inc%suction, e, state%p_c, r, follows, sliding, unit, 0.0_wp)
       end do
       unit = 0.0_wp
-      dsig_dpc = par%p_min*held_rate(par, inc%bonded, e, state%p_c, r, follows, sliding, unit, 1.0_wp)
+      dsig_dpc = par%p_min*held_rate(par, inc%suction, e, state%p_c, r, follows, sliding, unit, 1.0_wp)
    end subroutine held_tangent
 
    !> Mode in which a held point would go on if it closed: inside the elastic domain without plastic dilatancy. One of
@@ -330,7 +331,7 @@ contains
 
       e = min(void_ratio_at(inc, time + h), parts)
       r = r0 + deviator((2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min*h)*inc%d_strain)
-      r = limited(par, psi_of(par, inc%bonded, e, suction_at(inc, time + h), par%p_min), r)
+      r = limited(par, psi_of(par, inc%suction, e, suction_at(inc, time + h), par%p_min), r)
    end function slide
 
    !> Change of that stress ratio with r0, with the increment's strain, with void ratio and suction at the end and with
@@ -347,45 +348,46 @@ contains
       stiffness = 2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min*h
       r = r0 + deviator(stiffness*inc%d_strain)
       change = dr0 + deviator(stiffness*d_strain) + deviator((stiffness*shear_slope(e)*de)*inc%d_strain)
-      psi = psi_of(par, inc%bonded, e, p_c, par%p_min)
+      psi = psi_of(par, inc%suction, e, p_c, par%p_min)
       if (norm(r) <= 0.0_wp) return
       if (excess(par, psi, r) <= 0.0_wp) return
-      dpsi = change_of_psi(par, inc%bonded, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_turn)
+      dpsi = change_of_psi(par, inc%suction, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_turn)
       change = change_of_limited(par, psi, r, dpsi, change)
    end function change_of_slide
 
    !> True where the stress ratio of a held point is on the bounding surface and an elastic rate would leave it.
    !> docs/theory/material.md section 6.2, to 1e-12 of the surface.
-   pure logical function slides(par, bonded, e, p_c, r, follows, d_strain, d_pc)
+   pure logical function slides(par, law, e, p_c, r, follows, d_strain, d_pc)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
+      type(suction_law_t), intent(in) :: law
       real(wp), intent(in) :: e, p_c, r(6), d_strain(6), d_pc   !< [-, kPa, -, -, kPa]; e: of the soil
       real(wp), intent(in) :: follows   !< 0 where the gap takes the change of volume, otherwise 1
       real(wp) :: psi, dpsi
 
       slides = .false.
       if (norm(r) <= 0.0_wp) return
-      psi = psi_of(par, bonded, e, p_c, par%p_min)
+      psi = psi_of(par, law, e, p_c, par%p_min)
       if (excess(par, psi, r) < -ON_SURFACE) return
-      dpsi = change_of_psi(par, bonded, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
-      slides = change_of_excess(par, psi, r, dpsi, held_rate(par, bonded, e, p_c, r, follows, .false., d_strain, &
+      dpsi = change_of_psi(par, law, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
+      slides = change_of_excess(par, psi, r, dpsi, held_rate(par, law, e, p_c, r, follows, .false., d_strain, &
                                                                 d_pc)) > 0.0_wp
    end function slides
 
    !> Rate of the stress ratio of a held point for a strain rate and a suction rate, linear in both: elastic, or along
    !> the bounding surface. [-], per unit of pseudo-time. docs/theory/material.md section 6.2,
    !> docs/theory/integration.md section 5.4.
-   pure function held_rate(par, bonded, e, p_c, r, follows, sliding, d_strain, d_pc) result(rate)
+   pure function held_rate(par, law, e, p_c, r, follows, sliding, d_strain, d_pc) result(rate)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded, sliding
+      type(suction_law_t), intent(in) :: law
+      logical, intent(in) :: sliding
       real(wp), intent(in) :: e, p_c, r(6), d_strain(6), d_pc   !< [-, kPa, -, -, kPa]; e: of the soil
       real(wp), intent(in) :: follows   !< 0 where the gap takes the change of volume, otherwise 1
       real(wp) :: rate(6), psi, dpsi
 
       rate = deviator((2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min)*d_strain)
       if (.not. sliding) return
-      psi = psi_of(par, bonded, e, p_c, par%p_min)
-      dpsi = change_of_psi(par, bonded, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
+      psi = psi_of(par, law, e, p_c, par%p_min)
+      dpsi = change_of_psi(par, law, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
       rate = change_of_limited(par, psi, r, dpsi, rate)
    end function held_rate
 end module mud_cutoff

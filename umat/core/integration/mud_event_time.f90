@@ -178,7 +178,7 @@ contains
       call stress_ratio(par, trial%y(1:6), p, r)
       psi = psi_at(par, inc, time, p)
       dp = merge(trace(y(1:6))/3.0_wp, 0.0_wp, p_follows(par, trial%y(1:6)))
-      dpsi = change_of_psi(par, inc%bonded, void_ratio_at(inc, time), suction_at(inc, time), p, de, &
+      dpsi = change_of_psi(par, inc%suction, void_ratio_at(inc, time), suction_at(inc, time), p, de, &
                                        dp_c, dp, d_turn)
       if (event == EVENT_BOUNDS) then
          slope = change_of_excess(par, psi, r, dpsi, dr)

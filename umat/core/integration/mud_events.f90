@@ -119,7 +119,7 @@ contains
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
 
-      mechanism_switches = inc%bonded .and. abs(inc%d_pc) > 0.0_wp
+      mechanism_switches = inc%suction%bonds .and. abs(inc%d_pc) > 0.0_wp
       if (.not. mechanism_switches) return
       associate (first => trial%w(1)%iso_drive, last => trial%w(inc%scheme%stages)%iso_drive)
          mechanism_switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)

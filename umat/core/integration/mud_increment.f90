@@ -7,7 +7,7 @@ module mud_increment
    use mud_tensor, only: LANES, ddot, trace, traces, norm, tensors_t, contracted, &
       UNIT_STRAINS, ANY_TENSORS
    use mud_loading, only: loading_t, no_strain, whole_strain
-   use mud_bonding, only: is_bonded
+   use mud_bonding, only: suction_law_t, is_bonded, bonding
    use mud_elastic, only: centre_modulus
    use mud_fluidity, only: recovery
    use mud_rate, only: rate_t
@@ -39,7 +39,7 @@ module mud_increment
       logical :: straight           !< From there on all of the strain loads: it leads along nu.
       ! the phase
       real(wp) :: from, to          !< Begin and end of the phase in the increment [-].
-      logical :: bonded             !< Bonding is on and there is suction.
+      type(suction_law_t) :: suction   !< The law of the phase: with its branch, and bonding where that acts.
       logical :: inside             !< The phase is inside the elastic domain.
       type(scheme_t) :: scheme      !< Pair of the substep.
       logical :: rests              !< The isotropic mechanism is below its memory in the substep.
@@ -57,13 +57,17 @@ contains
       type(counters_t), intent(inout) :: counters
       type(rate_t), intent(in), optional :: near   !< Rate nearby, as rate_at has it.
       type(conditions_t) :: at
-      real(wp) :: loading(6), aside(6), from_centre, g, volume
+      real(wp) :: loading(6), aside(6), from_centre, e, g, volume
 
-      at = conditions_t(inc%bonded, inc%rests, void_ratio_at(inc, time), suction_at(inc, time), r_in)
+      e = void_ratio_at(inc, time)
+      if (inc%suction%bonds) at%bond = bonding(inc%suction, suction_at(inc, time), e)
+      at%rests = inc%rests
+      at%e = e
+      at%r_in = r_in
       if (has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)) then
          call loading_strain(inc, mode, time, loading, aside, from_centre)
          call rate_at(par, y, at, loading, inc%d_pc, mode, w, near)
-         g = 2.0_wp*centre_modulus(par, at%e, w%k, from_centre)
+         g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)
          volume = trace(aside)
          w%d_p = w%d_p + w%k*volume
          w%d_sigma = w%d_sigma + g*aside
@@ -274,6 +278,7 @@ contains
       inc%length = norm(d_strain)
       inc%scheme = SCHEMES(max(par%scheme, 1))   ! automatic: chosen for every attempt
       inc%rests = .false.
+      inc%suction = par%suction
       inc%rho = par%rho_e
       inc%exit = 1.0_wp
       inc%from_centre = 0.0_wp
@@ -310,7 +315,7 @@ contains
       inc%from = from
       inc%to = to
       inc%inside = inc%rho > 0.0_wp .and. 0.5_wp*(from + to) < inc%exit
-      inc%bonded = is_bonded(par, suction_at(inc, 0.5_wp*(from + to)))
+      inc%suction%bonds = is_bonded(par%suction, suction_at(inc, 0.5_wp*(from + to)))
    end subroutine take_phase
 
    !> Strain from the centre of the elastic domain at the end of an increment [-]. docs/theory/memory-rules.md section

@@ -26,7 +26,7 @@ contains
       real(wp), intent(in) :: time, h, sigma(6)
       real(wp) :: p, r(6), e
 
-      closed = mode == MODE_ELASTIC .and. (abs(inc%d_pc) <= 0.0_wp .or. .not. inc%bonded)
+      closed = mode == MODE_ELASTIC .and. (abs(inc%d_pc) <= 0.0_wp .or. .not. inc%suction%bonds)
       if (.not. closed .or. par%cutoff) return
       call stress_ratio(par, sigma, p, r)
       e = void_ratio_at(inc, time)

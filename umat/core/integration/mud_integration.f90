@@ -5,7 +5,6 @@ module mud_integration
    use mud_event_table, only: EVENT_NONE
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t
    use mud_trace, only: trace_t, record_substep
@@ -33,13 +32,12 @@ module mud_integration
    end type integration_t
 contains
    !> Records an attempt h, a share of the increment, with its relative error [-] and the stress to which it led.
-   pure subroutine record(par, h, error, sigma, outcome, it)
-      type(params_t), intent(in) :: par
+   pure subroutine record(h, error, sigma, outcome, it)
       real(wp), intent(in) :: h, error, sigma(6)
       integer, intent(in) :: outcome   !< SUBSTEP_*
       type(integration_t), intent(inout) :: it
 
-      if (it%traced) call record_substep(par, it%inc, it%trial, h, error, sigma, outcome, it%jump, &
+      if (it%traced) call record_substep(it%inc, it%trial, h, error, sigma, outcome, it%jump, &
                                          it%event /= EVENT_NONE, it%counters, it%trace)
    end subroutine record
 end module mud_integration

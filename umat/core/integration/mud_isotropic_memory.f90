@@ -2,7 +2,7 @@
 !> Isotropic memory along a substep: the margin u to where compression was before, and whether it would rise;
 !> docs/theory/material.md section 4.10.
 module mud_isotropic_memory
-   use mud_bonding, only: bonding_t, bonding, bonding_curvature, bonding_with_turn, UNBONDED
+   use mud_bonding, only: bonding_t, bonding, bonding_curvature, bonding_with_turn
    use mud_elastic, only: bulk_modulus, bulk_slope, BULK_EXPONENT
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_kinds, only: wp
@@ -59,8 +59,7 @@ contains
 
       e = void_ratio_at(inc, time)
       p = max(trace(sigma)/3.0_wp, par%p_min)
-      bond = UNBONDED
-      if (inc%bonded) bond = bonding(par, suction_at(inc, time), e)
+      bond = bonding(inc%suction, suction_at(inc, time), e)
       m = measure(par, bond, e, p, bulk_modulus(par, e, p))
    end function measure_at
 
@@ -123,11 +122,11 @@ contains
       m = measure_at(par, inc, time, sigma)
       change = m%by_e*de + m%by_pc*dp_c
       if (p_follows(par, sigma)) change = change + (m%by_p/3.0_wp)*(y(:, 1) + y(:, 2) + y(:, 3))
-      if (.not. (inc%bonded .and. scans)) return
+      if (.not. (inc%suction%bonds .and. scans)) return
       e = void_ratio_at(inc, time)
       p_c = suction_at(inc, time)
-      bond = bonding(par, p_c, e)
-      with_turn = bonding_with_turn(par, bond, p_c, e)
+      bond = bonding(inc%suction, p_c, e)
+      with_turn = bonding_with_turn(inc%suction, bond, p_c, e)
       change = change - (with_turn(1)/(par%lambda*bond%f))*turn
    end function changes_of_measure
 
@@ -154,8 +153,8 @@ contains
          change = m%by_p*flow + (change_of_stiffness(par, m, w%p)*w%k*on_flow)*dp
       else
          change = m%by_e*(1.0_wp + e)/w%k*(flow - on_flow*dk) + (m%by_e*on_flow)*de
-         if (inc%bonded) then
-            curvature = bonding_curvature(par, w%bond, suction_at(inc, time), e)
+         if (inc%suction%bonds) then
+            curvature = bonding_curvature(inc%suction, w%bond, suction_at(inc, time), e)
             df = w%bond%df_de*de + w%bond%df_dpc*dp_c
             df_e = curvature(3)*de + curvature(2)*dp_c
             change = change - ((1.0_wp + e)*on_flow/(par%lambda*w%bond%f))*(df_e - (w%bond%df_de/w%bond%f)*df)

@@ -25,9 +25,8 @@ module mud_phases
       logical :: turns   !< x turns there.
    end type cut_t
 contains
-   !> Integrates an increment that is not zero. On return it%inc is in the phase that ended it, and with hysteresis
-   !> course%branch is its branch. Errors are those of integrate_phase; the state is then that of the last accepted
-   !> substep. docs/theory/integration.md section 1.
+   !> Integrates an increment that is not zero. On return it%inc is in the phase that ended it. Errors are those of
+   !> integrate_phase; the state is then that of the last accepted substep. docs/theory/integration.md section 1.
    pure subroutine integrate_phases(par, course, it)
       type(params_t), intent(in) :: par
       type(course_t), intent(inout) :: course   !< With hysteresis; otherwise without meaning.
@@ -46,11 +45,7 @@ contains
             end_shift = change_of_cut(par, it, cuts(i))
             call begin_stretch(it%inc, end_shift, it%sens)
          end if
-         if (par%hysteresis) then
-            call integrate_phase(course%branch, end_shift, it)
-         else
-            call integrate_phase(par, end_shift, it)
-         end if
+         call integrate_phase(par, end_shift, it)
          if (it%status%code /= MUD_OK) return
          if (cuts(i)%turns) call turn_around(course, it)
          from = cuts(i)%time
@@ -107,7 +102,7 @@ contains
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
 
-      passes_zero = par%bonding .and. abs(inc%p_c0) > 0.0_wp
+      passes_zero = par%suction%bonds .and. abs(inc%p_c0) > 0.0_wp
       if (passes_zero) passes_zero = (inc%p_c0 > 0.0_wp) .neqv. (suction_at(inc, 1.0_wp) >= 0.0_wp)
    end function passes_zero
 
@@ -120,9 +115,9 @@ contains
 
       select case (cut%kind)
       case (CUT_TURN)
-         change = change_of_turn(it%inc, cut%time, par%omega, it%sens%driving)
+         change = change_of_turn(it%inc, cut%time, par%suction%omega, it%sens%driving)
       case (CUT_KINK)
-         change = change_of_passing(it%inc, cut%time, par%omega, it%sens%driving)
+         change = change_of_passing(it%inc, cut%time, par%suction%omega, it%sens%driving)
       case (CUT_NO_SUCTION)
          change = change_of_zero_suction(it%inc, cut%time, it%sens%driving)
       case (CUT_EXIT)

@@ -3,7 +3,6 @@
 module mud_point
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t, elastic_blocks, continuum_blocks
-   use mud_bonding, only: is_bonded
    use mud_branches, only: course_t, begin_course, end_course
    use mud_checks, only: check_increment
    use mud_consistent, only: no_sensitivity
@@ -49,27 +48,20 @@ contains
       end if
 
       p_c = it%state%p_c + d_pc
-      if (par%hysteresis) then
-         call begin_course(par, it%inc, it%state, it%counters, course)
-         call begin(course%branch, tangent, it)
-      else
-         call begin(par, tangent, it)
-      end if
+      if (par%hysteresis) call begin_course(par, it%inc, it%state, it%counters, course)
+      call begin(par, tangent, it)
       if (it%size > 0.0_wp) call integrate_phases(par, course, it)
       if (it%status%code /= MUD_OK) return
       it%reached = 1.0_wp
       it%state%e = e
       it%state%p_c = p_c
-      if (par%hysteresis) then
-         call end_course(it%inc, course, it%state, with_turn)
-         call finish_state(course%branch, it%state, blocks)
-         blocks%dsw_dpc = blocks%dsw_dpc + with_turn(1)
-         blocks%dsw_dev = blocks%dsw_dev + with_turn(2)
-         call fill_blocks(course%branch, tangent, it, blocks)
-      else
-         call finish_state(par, it%state, blocks)
-         call fill_blocks(par, tangent, it, blocks)
-      end if
+      with_turn = 0.0_wp
+      if (par%hysteresis) call end_course(it%inc, course, it%state, with_turn)
+      it%inc%suction%bonds = par%suction%bonds   ! the phases are over
+      call finish_state(par, it%inc%suction, it%state, blocks)
+      blocks%dsw_dpc = blocks%dsw_dpc + with_turn(1)
+      blocks%dsw_dev = blocks%dsw_dev + with_turn(2)
+      call fill_blocks(par, tangent, it, blocks)
       if (has_tension(it%state%sigma)) it%counters%tensile = 1
    end subroutine update_point
 
@@ -80,7 +72,7 @@ contains
       type(integration_t), intent(inout) :: it
 
       associate (state => it%state)
-         if (par%cutoff) state%sigma = lifted(par, is_bonded(par, state%p_c), state%sigma, state%e, state%p_c)
+         if (par%cutoff) state%sigma = lifted(par, it%inc%suction, state%sigma, state%e, state%p_c)
       end associate
       it%size = extent_of(par, it%inc, it%state)
       it%consistent = tangent == TANGENT_CONSISTENT .and. it%size > 0.0_wp

@@ -3,7 +3,7 @@
 module mud_start
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t
-   use mud_bonding, only: bonding_t, is_bonded, bonding, UNBONDED
+   use mud_bonding, only: suction_law_t, bonding_t, is_bonded, bonding, UNBONDED
    use mud_checks, only: check_stress
    use mud_critical_state, only: state_parameter
    use mud_cutoff, only: lifted, soil_void_ratio
@@ -30,7 +30,7 @@ contains
       type(state_t), intent(out) :: state
       type(mud_status_t), intent(out) :: status
       real(wp), intent(in), optional :: preset   !< S_w, with hysteresis; none or 0: on the main drying curve [-].
-      type(params_t) :: branch
+      type(suction_law_t) :: law
       type(path_t) :: path
       real(wp) :: p, r(6)
 
@@ -54,20 +54,18 @@ contains
       state%eps_q_total = 0.0_wp
       state%last_step = 0.0_wp
       state%open = .false.
+      law = par%suction
       if (par%hysteresis) then
          state%s_w = 0.0_wp
          if (present(preset)) state%s_w = preset
-         call preset_saturation(par, p_c, e, state%s_w, status)
+         call preset_saturation(par%suction%retention_t, p_c, e, state%s_w, status)
          if (status%code /= MUD_OK) return
-         path = begin_path(par, log_suction(par, p_c, e), state%s_w)
+         path = begin_path(par%suction%retention_t, log_suction(par%suction%retention_t, p_c, e), state%s_w)
          state%turns = path%turns
-         branch = branch_of(par, path)
-         state%sigma = lifted(branch, is_bonded(par, p_c), sigma, e, p_c)
-         call finish_state(branch, state)
-      else
-         state%sigma = lifted(par, is_bonded(par, p_c), sigma, e, p_c)
-         call finish_state(par, state)
+         law%retention_t = branch_of(par%suction%retention_t, path)
       end if
+      state%sigma = lifted(par, law, sigma, e, p_c)
+      call finish_state(par, law, state)
       call stress_ratio(par, state%sigma, p, r)
       state%memory = new_memory(r)
    end subroutine initial_state
@@ -75,22 +73,23 @@ contains
    !> Saturation and state parameter of a state, and the saturation's slopes; with hysteresis S_w is the state's.
    !> S_w and psi [-]; slopes [-] against volumetric strain, compression positive, and [1/kPa] against suction.
    !> docs/theory/material.md sections 2.1, 3.2.
-   pure subroutine finish_state(par, state, blocks)
+   pure subroutine finish_state(par, law, state, blocks)
       type(params_t), intent(in) :: par
+      type(suction_law_t), intent(in) :: law   !< with the branch of the state
       type(state_t), intent(inout) :: state
       type(blocks_t), intent(inout), optional :: blocks
       type(saturation_t) :: sat
       type(bonding_t) :: bond
 
       bond = UNBONDED
-      if (is_bonded(par, state%p_c)) then
-         bond = bonding(par, state%p_c, state%e)
+      if (is_bonded(law, state%p_c)) then
+         bond = bonding(law, state%p_c, state%e)
          sat = bond%sat
       else
-         sat = saturation(par, state%p_c, state%e)
+         sat = saturation(law%retention_t, state%p_c, state%e)
       end if
       if (.not. par%hysteresis) state%s_w = sat%s_w
-      if (state%gap > 0.0_wp .and. is_bonded(par, state%p_c)) bond = bonding(par, state%p_c, soil_void_ratio(state))
+      if (state%gap > 0.0_wp .and. is_bonded(law, state%p_c)) bond = bonding(law, state%p_c, soil_void_ratio(state))
       state%psi = state_parameter(par, bond%f, soil_void_ratio(state), max(trace(state%sigma)/3.0_wp, par%p_min))
       if (.not. present(blocks)) return
       blocks%dsw_dpc = sat%ds_dpc

@@ -76,7 +76,7 @@ contains
          if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
          if (step%elastic > 1 .and. par%guarded) then
             it%status = fail(MUD_NO_DIRECTION)
-            call record(par, h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
+            call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
             return
          end if
          time = time + h
@@ -120,7 +120,7 @@ contains
          step%error = error_norm(par, it%inc%scheme, it%trial, h)
          if (.not. all_finite(it%trial%y) .or. .not. is_finite(step%error)) then
             it%status = fail(MUD_NOT_FINITE, ON_STRESS)
-            call record(par, h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
+            call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
             return
          end if
          call judge_attempt(par, it%inc, it%trial, h, step%error, may_grow, step%control, tolerance, step%factor)
@@ -128,7 +128,7 @@ contains
          if (min(step%h, h) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
             if (par%guarded) then
                it%status = fail(MUD_MINIMUM_STEP, value=step%error, lower=0.0_wp, upper=par%tolerance)
-               call record(par, h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
+               call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
             else
                it%counters%min_step = it%counters%min_step + 1
                step%factor = 1.0_wp
@@ -136,7 +136,7 @@ contains
             return
          end if
          it%counters%reject = it%counters%reject + 1
-         call record(par, h, step%error, it%trial%y(1:6), SUBSTEP_REJECTED, it)
+         call record(h, step%error, it%trial%y(1:6), SUBSTEP_REJECTED, it)
          may_grow = .false.
          step%h = next_size(par, it%inc, it%trial, h, min(step%factor, 0.9_wp), .false.)
          step%planned = step%h*it%size
@@ -161,7 +161,7 @@ contains
       if (par%remembers .and. it%consistent) then
          if (it%state%margin >= 0.0_wp) call changes_at_memory(par, it%inc, time, it%state%sigma, it%sens)
       end if
-      call record(par, h, error, it%state%sigma, SUBSTEP_ACCEPTED, it)
+      call record(h, error, it%state%sigma, SUBSTEP_ACCEPTED, it)
       it%known = rate_is_known(it)
    end subroutine leave_substep
 

@@ -3,7 +3,6 @@
 module mud_trace
    use, intrinsic :: iso_c_binding, only: c_int, c_double
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    use mud_retention, only: saturation_t, saturation
    use mud_state, only: counters_t, guard_count
    use mud_increment, only: increment_t, void_ratio_at, suction_at
@@ -29,8 +28,7 @@ module mud_trace
    end type trace_t
 contains
    !> Records one attempt. Compression positive; an attempt without a row is only counted.
-   pure subroutine record_substep(par, inc, trial, h, error, sigma, outcome, jump, landed, counters, trace)
-      type(params_t), intent(in) :: par
+   pure subroutine record_substep(inc, trial, h, error, sigma, outcome, jump, landed, counters, trace)
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h, error        !< Size, share of the increment, and its relative error [-].
@@ -49,7 +47,7 @@ contains
       if (row > size(trace%rows)) return
       e = void_ratio_at(inc, trial%time + h)
       p_c = suction_at(inc, trial%time + h)
-      sat = saturation(par, p_c, e)
+      sat = saturation(inc%suction%retention_t, p_c, e)
       trace%rows(row) = substep_t(outcome, trial%mode, jump, merge(1, 0, landed), counters%rate, counters%reset, &
                                   guard_count(counters), counters%no_root, &
                                   trial%time, h, error, e, sat%s_w, p_c, sigma)

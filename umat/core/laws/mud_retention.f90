@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Water retention: how much of the pore space is water; docs/theory/material.md section 2.1. With hysteresis the
-!> parameters are those of a phase of an increment, whose S_w follows a scanning branch: see mud_scanning.
+!> Water retention: how much of the pore space is water; docs/theory/material.md section 2.1. A retention is a curve, or
+!> with hysteresis the branch that a phase of an increment follows, which mud_scanning makes; both answer alike.
 module mud_retention
    use mud_kinds, only: wp
-   use mud_params, only: params_t, branch_t, NO_OFFSET
+   use mud_registry, only: MAX_TURNS
    implicit none (type, external)
    private
+   public :: retention_t, branch_t, scanning_t, least_t, NO_BRANCH, NO_OFFSET, MAX_LEAST
    public :: saturation_t, saturation, saturation_curvature, change_with_turn, log_suction, NO_SUCTION
    public :: main_curve_t, main_curve, on_main_curve_t, on_main_curve, bend_of, suction_on_curve, power_of, &
              along_t, along_raw_branch, follow_branches, curve_at, ON_CURVE
@@ -21,6 +22,48 @@ module mud_retention
    !> a share of S_max [-].
    real(wp), parameter :: BESIDE = 1.0e-10_wp
    real(wp), parameter :: NO_SUCTION = -1.0e4_wp  !< ln(x/P_a) where there is none: below every number's.
+
+   integer, parameter :: MAX_LEAST = 4   !< Largest number of least offsets of each direction; every set tried has none
+                                         !< or one.
+
+   !> A scanning branch of S_w, docs/theory/material.md section 2.1.1: the suction y of a main curve at the same S_w
+   !> follows y**q = x**q + offset**q. Suctions are ln(x/P_a).
+   type :: branch_t
+      logical :: dries
+      real(wp) :: log_x, s_w   !< Where it begins [-].
+      real(wp) :: log_offset   !< q ln(offset/P_a), NO_OFFSET: no offset [-].
+      real(wp) :: share        !< Factor on its changes, so that it ends where its loop closes [-].
+      logical :: straight      !< In ln x, of slope `share`: S_w hardly changes, and a scale would be rounding.
+   end type branch_t
+
+   !> Way of S_w along the last branch, which is limited by those that it left. docs/theory/material.md 2.1.1.
+   type :: scanning_t
+      logical :: acts
+      integer :: n              !< Number of branches, at least 1; the last is the present one.
+      type(branch_t) :: branches(MAX_TURNS)
+      logical :: moves          !< The present branch begins at a turn inside the increment, and depends on that.
+      real(wp) :: s_w_rate, offset_rate, share_rate   !< Derivatives with its ln x; not set otherwise [-].
+   end type scanning_t
+
+   !> Least offsets of branches that touch the opposite main curve from inside; first index 1 in wetting, 2 in drying.
+   type :: least_t
+      logical :: known
+      integer :: n(2)
+      real(wp) :: log_x(2, MAX_LEAST), log_offset(2, MAX_LEAST)
+   end type least_t
+
+   real(wp), parameter :: NO_OFFSET = -huge(1.0_wp)
+   type(branch_t), parameter :: NO_BRANCH = branch_t(.true., 0.0_wp, 0.0_wp, NO_OFFSET, 1.0_wp, .false.)
+
+   !> The parameters of the main curves, and the branch that is followed where that acts. Those of the wetting curve and
+   !> of hysteresis are set with hysteresis; what the user leaves to others has their values.
+   type :: retention_t
+      real(wp) :: s_max, s_min, p_a, omega, n_x, m_x
+      real(wp) :: p_aw, n_w, m_w, b_d, b_w
+      real(wp) :: log_wetting       !< ln(P_aw/P_a) [-].
+      type(least_t) :: least
+      type(scanning_t) :: scanning
+   end type retention_t
 
    !> Degree of saturation and its slopes.
    type :: saturation_t
@@ -53,53 +96,53 @@ module mud_retention
 contains
    !> Degree of saturation at a suction [kPa] and a void ratio [-], paper eqs (23), (24). No suction: S_max, zero
    !> slopes. On a scanning branch that of docs/theory/material.md section 2.1.1. e > 0 is not checked.
-   pure function saturation(par, p_c, e) result(sat)
-      type(params_t), intent(in) :: par
+   pure function saturation(self, p_c, e) result(sat)
+      type(retention_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e
       type(saturation_t) :: sat
       type(on_main_curve_t) :: at
       type(along_t) :: along
       logical :: limited
 
-      sat = saturation_t(par%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
+      sat = saturation_t(self%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
       if (p_c <= 0.0_wp) return
-      if (par%scanning%acts) then
-         call follow_branches(par, log_suction(par, p_c, e), along, limited)
+      if (self%scanning%acts) then
+         call follow_branches(self, log_suction(self, p_c, e), along, limited)
          sat%s_w = along%s_w
          sat%ds_dpc = along%slope/p_c
-         sat%ds_de = along%slope*par%omega/e
+         sat%ds_de = along%slope*self%omega/e
          return
       end if
-      at = on_main_curve(par, main_curve_t(0.0_wp, par%n_x, par%m_x), log_suction(par, p_c, e))
+      at = on_main_curve(self, main_curve_t(0.0_wp, self%n_x, self%m_x), log_suction(self, p_c, e))
       sat%s_w = at%s_w
       sat%ds_dpc = at%slope/p_c
-      sat%ds_de = at%slope*par%omega/e
+      sat%ds_de = at%slope*self%omega/e
       sat%share = at%share
       sat%log_sum = at%log_sum
    end function saturation
 
    !> The main drying or the main wetting curve. docs/theory/material.md section 2.1.1.
-   pure function main_curve(par, dries) result(curve)
-      type(params_t), intent(in) :: par   !< With hysteresis.
+   pure function main_curve(self, dries) result(curve)
+      type(retention_t), intent(in) :: self   !< with hysteresis
       logical, intent(in) :: dries
       type(main_curve_t) :: curve
 
       if (dries) then
-         curve = main_curve_t(0.0_wp, par%n_x, par%m_x)
+         curve = main_curve_t(0.0_wp, self%n_x, self%m_x)
       else
-         curve = main_curve_t(par%log_wetting, par%n_w, par%m_w)
+         curve = main_curve_t(self%log_wetting, self%n_w, self%m_w)
       end if
    end function main_curve
 
    !> Paper eq. (24) at ln(x/P_a) [-]: S_w, its slope, and what its second derivative takes.
-   pure function on_main_curve(par, curve, log_x) result(at)
-      type(params_t), intent(in) :: par
+   pure function on_main_curve(self, curve, log_x) result(at)
+      type(retention_t), intent(in) :: self
       type(main_curve_t), intent(in) :: curve
       real(wp), intent(in) :: log_x
       type(on_main_curve_t) :: at
       real(wp) :: log_a, a, s_e
 
-      at = on_main_curve_t(par%s_max, 0.0_wp, 0.0_wp, 1.0_wp)
+      at = on_main_curve_t(self%s_max, 0.0_wp, 0.0_wp, 1.0_wp)
       log_a = curve%n*(log_x - curve%log_entry)                 ! a = (x/P)^n
       if (log_a < -LOG_LARGE) return
       if (log_a > LOG_LARGE) then
@@ -110,8 +153,8 @@ contains
          at%log_sum = log(EULER + a)
          at%share = a/(EULER + a)
       end if
-      s_e = (par%s_max - par%s_min)*at%log_sum**(-curve%m)
-      at%s_w = par%s_min + s_e
+      s_e = (self%s_max - self%s_min)*at%log_sum**(-curve%m)
+      at%s_w = self%s_min + s_e
       at%slope = -curve%m*s_e/at%log_sum*at%share*curve%n       ! dS_w/d ln x
    end function on_main_curve
 
@@ -124,14 +167,14 @@ contains
    end function bend_of
 
    !> ln(x/P_a) of a main curve at a degree of saturation: eq. (24) the other way round [-].
-   pure real(wp) function suction_on_curve(par, curve, s_w) result(log_y)
-      type(params_t), intent(in) :: par
+   pure real(wp) function suction_on_curve(self, curve, s_w) result(log_y)
+      type(retention_t), intent(in) :: self
       type(main_curve_t), intent(in) :: curve
       real(wp), intent(in) :: s_w
       real(wp) :: s_e, log_sum, a
 
       log_y = curve%log_entry - LOG_LARGE/curve%n
-      s_e = (s_w - par%s_min)/(par%s_max - par%s_min)
+      s_e = (s_w - self%s_min)/(self%s_max - self%s_min)
       if (s_e >= 1.0_wp) return
       log_sum = exp(LARGEST_LOG)
       if (s_e > 0.0_wp) log_sum = exp(min(-log(s_e)/curve%m, LARGEST_LOG))   ! ln(exp(1) + a)
@@ -144,28 +187,28 @@ contains
    end function suction_on_curve
 
    !> ln(p*/P_a), paper eq. (23). It is ln(p_c/P_a) + Omega ln e [-]; e > 0 is not checked. NO_SUCTION without suction.
-   pure real(wp) function log_suction(par, p_c, e)
-      type(params_t), intent(in) :: par
+   pure real(wp) function log_suction(self, p_c, e)
+      type(retention_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e   !< [kPa, -]
 
       log_suction = NO_SUCTION
       if (p_c <= 0.0_wp) return
-      log_suction = log(p_c/par%p_a)
-      if (par%omega > 0.0_wp) log_suction = log_suction + par%omega*log(e)
+      log_suction = log(p_c/self%p_a)
+      if (self%omega > 0.0_wp) log_suction = log_suction + self%omega*log(e)
    end function log_suction
 
    !> q of y**q = x**q + offset**q. docs/theory/material.md section 2.1.1.
-   pure real(wp) function power_of(par, dries) result(q)
-      type(params_t), intent(in) :: par
+   pure real(wp) function power_of(self, dries) result(q)
+      type(retention_t), intent(in) :: self
       logical, intent(in) :: dries
 
-      q = merge(1.0_wp + par%b_d, 1.0_wp - par%b_w, dries)
+      q = merge(1.0_wp + self%b_d, 1.0_wp - self%b_w, dries)
    end function power_of
 
    !> A point of a branch that nothing limits but the main curves, at ln(x/P_a) [-]: the solution of its differential
    !> equation, which slides along the opposite main curve where that is flatter. docs/theory/material.md section 2.1.1.
-   pure function along_raw_branch(par, branch, log_x) result(along)
-      type(params_t), intent(in) :: par
+   pure function along_raw_branch(self, branch, log_x) result(along)
+      type(retention_t), intent(in) :: self
       type(branch_t), intent(in) :: branch
       real(wp), intent(in) :: log_x
       type(along_t) :: along
@@ -177,13 +220,13 @@ contains
       way = merge(2, 1, branch%dries)
       log_offset = branch%log_offset
       along%curve = FREE
-      do i = 1, par%least%n(way)
-         if ((par%least%log_x(way, i) - branch%log_x)*(par%least%log_x(way, i) - log_x) >= 0.0_wp) cycle
-         if (par%least%log_offset(way, i) >= log_offset) cycle
-         log_offset = par%least%log_offset(way, i)
+      do i = 1, self%least%n(way)
+         if ((self%least%log_x(way, i) - branch%log_x)*(self%least%log_x(way, i) - log_x) >= 0.0_wp) cycle
+         if (self%least%log_offset(way, i) >= log_offset) cycle
+         log_offset = self%least%log_offset(way, i)
          along%curve = SLID
       end do
-      q = power_of(par, branch%dries)
+      q = power_of(self, branch%dries)
       log_weight = 0.0_wp
       rest = 0.0_wp
       if (log_offset > 0.5_wp*NO_OFFSET) then
@@ -197,8 +240,8 @@ contains
          end if
       end if
       weight = exp(log_weight)                 ! d ln y/d ln x = (x/y)**q
-      curve = main_curve(par, branch%dries)
-      at = on_main_curve(par, curve, log_x - log_weight/q)
+      curve = main_curve(self, branch%dries)
+      at = on_main_curve(self, curve, log_x - log_weight/q)
       bend = bend_of(curve, at)
       along%s_w = at%s_w
       along%slope = at%slope*weight
@@ -209,16 +252,16 @@ contains
          along%with_offset = at%slope*rest/q
          along%slope_with_offset = weight*rest*(bend/q - at%slope)
       end if
-      opposite = main_curve(par, .not. branch%dries)
-      at = on_main_curve(par, opposite, log_x)
-      call limit(par, branch%dries, .true., along_t(at%s_w, at%slope, bend_of(opposite, at), 0.0_wp, 0.0_wp, &
+      opposite = main_curve(self, .not. branch%dries)
+      at = on_main_curve(self, opposite, log_x)
+      call limit(self, branch%dries, .true., along_t(at%s_w, at%slope, bend_of(opposite, at), 0.0_wp, 0.0_wp, &
                                                     BESIDE_MAIN), along)
    end function along_raw_branch
 
    !> A branch does not cross another one: drying stays above it, wetting below. Where it leaves it both are equal but
    !> for rounding; it is followed there with its own slope, unless that is steeper.
-   pure subroutine limit(par, dries, begins, other, along, limited)
-      type(params_t), intent(in) :: par
+   pure subroutine limit(self, dries, begins, other, along, limited)
+      type(retention_t), intent(in) :: self
       logical, intent(in) :: dries
       logical, intent(in) :: begins   !< Where both are equal it leaves the other one; not where it arrives there.
       type(along_t), intent(in) :: other
@@ -228,8 +271,8 @@ contains
       logical :: acts
 
       beyond = merge(other%s_w - along%s_w, along%s_w - other%s_w, dries)
-      rounding = ON_CURVE*par%s_max*(1.0_wp + 1.0_wp/abs(power_of(par, .false.)))
-      acts = beyond > BESIDE*par%s_max .or. &
+      rounding = ON_CURVE*self%s_max*(1.0_wp + 1.0_wp/abs(power_of(self, .false.)))
+      acts = beyond > BESIDE*self%s_max .or. &
              (begins .and. beyond > -rounding .and. abs(along%slope) > abs(other%slope))
       s_w = along%s_w
       if (beyond > 0.0_wp) s_w = other%s_w
@@ -240,51 +283,52 @@ contains
 
    !> A point of the present branch at ln(x/P_a) [-]: every branch is scaled so that it closes its loop, and limited by
    !> the one that it left, so that closed loops dissipate. docs/theory/material.md section 2.1.1.
-   pure subroutine follow_branches(par, log_x, along, limited)
-      type(params_t), intent(in) :: par
+   pure subroutine follow_branches(self, log_x, along, limited)
+      type(retention_t), intent(in) :: self
       real(wp), intent(in) :: log_x
       type(along_t), intent(out) :: along
       logical, intent(out) :: limited   !< The last branch is not the one that is followed.
       type(along_t) :: left
       integer :: k
 
-      along = along_raw_branch(par, par%scanning%branches(1), log_x)
+      along = along_raw_branch(self, self%scanning%branches(1), log_x)
       limited = .false.
-      do k = 2, par%scanning%n
+      do k = 2, self%scanning%n
          left = along
-         associate (branch => par%scanning%branches(k))
+         associate (branch => self%scanning%branches(k))
             if (branch%straight) then
                along = along_t(branch%s_w + branch%share*(log_x - branch%log_x), branch%share, 0.0_wp, 0.0_wp, &
                                0.0_wp, FREE)
             else
-               along = along_raw_branch(par, branch, log_x)
+               along = along_raw_branch(self, branch, log_x)
                along%s_w = branch%s_w + branch%share*(along%s_w - branch%s_w)
                along%slope = branch%share*along%slope
                along%bend = branch%share*along%bend
             end if
             along%curve = along%curve + NEXT_BRANCH*(k - 1)
-            call limit(par, branch%dries, abs(log_x - branch%log_x) < abs(log_x - par%scanning%branches(k - 1)%log_x), &
+            call limit(self, branch%dries, &
+                       abs(log_x - branch%log_x) < abs(log_x - self%scanning%branches(k - 1)%log_x), &
                        left, along, limited)
          end associate
       end do
    end subroutine follow_branches
 
    !> Number of the curve that is followed at ln(x/P_a) [-]: another one where S_w has had a kink on the way.
-   pure integer function curve_at(par, log_x)
-      type(params_t), intent(in) :: par   !< Parameters with a branch.
+   pure integer function curve_at(self, log_x)
+      type(retention_t), intent(in) :: self   !< with a branch
       real(wp), intent(in) :: log_x
       type(along_t) :: along
       logical :: limited
 
-      call follow_branches(par, log_x, along, limited)
+      call follow_branches(self, log_x, along, limited)
       curve_at = along%curve
    end function curve_at
 
    !> Second derivatives [d2S/dp_c2 (1/kPa2), d2S/dp_c de (1/kPa), d2S/de2 (-)] at the suction and void ratio of sat.
    !> sat is that of p_c [kPa] and e [-]; zeros without suction. Derivatives of paper eqs (23), (24) and of
    !> docs/theory/material.md section 2.1.1.
-   pure function saturation_curvature(par, sat, p_c, e) result(curvature)
-      type(params_t), intent(in) :: par
+   pure function saturation_curvature(self, sat, p_c, e) result(curvature)
+      type(retention_t), intent(in) :: self
       type(saturation_t), intent(in) :: sat
       real(wp), intent(in) :: p_c, e
       type(along_t) :: along
@@ -294,39 +338,39 @@ contains
       curvature = 0.0_wp
       if (p_c <= 0.0_wp) return
       slope = sat%ds_dpc*p_c                                    ! dS_w/d ln p*
-      if (par%scanning%acts) then
-         call follow_branches(par, log_suction(par, p_c, e), along, limited)
+      if (self%scanning%acts) then
+         call follow_branches(self, log_suction(self, p_c, e), along, limited)
          bend = along%bend
       else
-         bend = bend_of(main_curve_t(0.0_wp, par%n_x, par%m_x), &
+         bend = bend_of(main_curve_t(0.0_wp, self%n_x, self%m_x), &
                         on_main_curve_t(sat%s_w, slope, sat%share, sat%log_sum))
       end if
       ! one division after the other: the square of a tiny suction would be 0
-      curvature = [(bend - slope)/p_c/p_c, bend*par%omega/p_c/e, (bend*par%omega - slope)*par%omega/e**2]
+      curvature = [(bend - slope)/p_c/p_c, bend*self%omega/p_c/e, (bend*self%omega - slope)*self%omega/e**2]
    end function saturation_curvature
 
    !> Derivatives [dS_w (-), d2S_w/dp_c (1/kPa), d2S_w/de (-)] with respect to ln x of the turn where the present branch
    !> begins, at a suction [kPa] and a void ratio [-]. Zeros where it does not move. docs/theory/material.md section
    !> 2.1.1.
-   pure function change_with_turn(par, p_c, e) result(change)
-      type(params_t), intent(in) :: par
+   pure function change_with_turn(self, p_c, e) result(change)
+      type(retention_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e
       type(along_t) :: along
       real(wp) :: change(3), log_x
       logical :: limited
 
       change = 0.0_wp
-      if (.not. par%scanning%moves .or. p_c <= 0.0_wp) return
-      log_x = log_suction(par, p_c, e)
-      call follow_branches(par, log_x, along, limited)
+      if (.not. self%scanning%moves .or. p_c <= 0.0_wp) return
+      log_x = log_suction(self, p_c, e)
+      call follow_branches(self, log_x, along, limited)
       if (limited) return
-      associate (scanning => par%scanning, branch => par%scanning%branches(par%scanning%n))
-         along = along_raw_branch(par, branch, log_x)
+      associate (scanning => self%scanning, branch => self%scanning%branches(self%scanning%n))
+         along = along_raw_branch(self, branch, log_x)
          change(1) = (1.0_wp - branch%share)*scanning%s_w_rate + scanning%share_rate*(along%s_w - branch%s_w) &
                      + branch%share*scanning%offset_rate*along%with_offset
          change(2) = scanning%share_rate*along%slope + branch%share*scanning%offset_rate*along%slope_with_offset
       end associate
-      change(3) = change(2)*par%omega/e
+      change(3) = change(2)*self%omega/e
       change(2) = change(2)/p_c
    end function change_with_turn
 end module mud_retention

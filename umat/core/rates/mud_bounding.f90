@@ -3,7 +3,7 @@
 module mud_bounding
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_bonding, only: bonding_t, bonding, bonding_with_turn, UNBONDED
+   use mud_bonding, only: suction_law_t, bonding_t, bonding, bonding_with_turn
    use mud_critical_state, only: state_parameter, state_parameter_slopes, bounding_ratio, bounding_slope, &
       bounding_norm, lode_gradient
    use mud_tensor, only: ddot, norm
@@ -11,34 +11,32 @@ module mud_bounding
    private
    public :: psi_of, change_of_psi, excess, change_of_excess, limited, change_of_limited
 contains
-   !> State parameter of a state [-]. Without `bonded` f is 1. docs/theory/material.md section 3.2.
-   pure real(wp) function psi_of(par, bonded, e, p_c, p) result(psi)
+   !> State parameter of a state [-]. docs/theory/material.md section 3.2.
+   pure real(wp) function psi_of(par, law, e, p_c, p) result(psi)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
+      type(suction_law_t), intent(in) :: law
       real(wp), intent(in) :: e, p_c, p   !< [-, kPa, kPa]
       type(bonding_t) :: bond
 
-      bond = UNBONDED
-      if (bonded) bond = bonding(par, p_c, e)
+      bond = bonding(law, p_c, e)
       psi = state_parameter(par, bond%f, e, p)
    end function psi_of
 
    !> Change of the state parameter with void ratio, suction and mean stress, and with ln x of the turn of a branch [-].
    !> At e [-], p_c and p [kPa], for their changes de [-], dp_c and dp [kPa], d_turn [-]; derivative of
    !> docs/theory/material.md sections 2.1.1 and 3.2.
-   pure real(wp) function change_of_psi(par, bonded, e, p_c, p, de, dp_c, dp, d_turn) result(change)
+   pure real(wp) function change_of_psi(par, law, e, p_c, p, de, dp_c, dp, d_turn) result(change)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
+      type(suction_law_t), intent(in) :: law
       real(wp), intent(in) :: e, p_c, p, de, dp_c, dp
       real(wp), intent(in), optional :: d_turn
       type(bonding_t) :: bond
       real(wp) :: df, with_turn(3), by_f, by_p
 
-      bond = UNBONDED
-      if (bonded) bond = bonding(par, p_c, e)
+      bond = bonding(law, p_c, e)
       df = bond%df_de*de + bond%df_dpc*dp_c
-      if (bonded .and. par%scanning%moves .and. present(d_turn)) then
-         with_turn = bonding_with_turn(par, bond, p_c, e)
+      if (law%bonds .and. law%scanning%moves .and. present(d_turn)) then
+         with_turn = bonding_with_turn(law, bond, p_c, e)
          df = df + with_turn(1)*d_turn
       end if
       call state_parameter_slopes(par, state_parameter(par, bond%f, e, p), bond%f, e, p, by_f, by_p)

@@ -5,7 +5,7 @@
 module mud_linearise
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_bonding, only: bonding_curvature, bonding_with_turn
+   use mud_bonding, only: suction_law_t, bonding_curvature, bonding_with_turn
    use mud_critical_state, only: state_parameter_slopes, bounding_slope, lode_gradient
    use mud_direction_equation, only: turn_t, find_turn
    use mud_elastic, only: bulk_slope, shear_slope, swelling_slope, centre_modulus, changed_centre_modulus, &
@@ -69,9 +69,9 @@ contains
    !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for the strain rate of loading and d_pc.
    !> sigma' and p_c [kPa], compression positive; e [-]; d_pc [kPa]. Of a rate that does not load the gradients and the
    !> inverse are not set. docs/theory/integration.md sections 5.2, 5.3.
-   pure subroutine linearise(par, bonded, w, sigma, e, p_c, loading, d_pc, lin)
+   pure subroutine linearise(par, law, w, sigma, e, p_c, loading, d_pc, lin)
       type(params_t), intent(in) :: par
-      logical, intent(in) :: bonded
+      type(suction_law_t), intent(in) :: law   !< in the phase
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: sigma(6), e, p_c, d_pc
       type(loading_t), intent(in) :: loading
@@ -85,9 +85,9 @@ contains
       lin%d_pc = d_pc
       lin%curvature = 0.0_wp
       lin%with_turn = 0.0_wp
-      if (bonded) then
-         lin%curvature = bonding_curvature(par, w%bond, p_c, e)
-         if (par%scanning%moves) lin%with_turn = bonding_with_turn(par, w%bond, p_c, e)
+      if (law%bonds) then
+         lin%curvature = bonding_curvature(law, w%bond, p_c, e)
+         if (law%scanning%moves) lin%with_turn = bonding_with_turn(law, w%bond, p_c, e)
       end if
       call state_parameter_slopes(par, w%psi, w%bond%f, e, w%p, lin%psi_f, lin%psi_p)
       lin%m_b_psi = bounding_slope(par, w%psi, w%m_b)

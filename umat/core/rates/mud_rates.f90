@@ -8,7 +8,7 @@ module mud_rates
    use mud_params, only: params_t
    use mud_tensor, only: IDENTITY, ddot, trace, deviator, norm
    use mud_elastic, only: bulk_modulus, shear_modulus, swelling_slope
-   use mud_bonding, only: bonding, UNBONDED
+   use mud_bonding, only: bonding_t, UNBONDED
    use mud_critical_state, only: state_parameter, bounding_ratio, dilatancy_ratio, bounding_norm
    use mud_direction, only: find_direction
    use mud_flow, only: fabric_rate
@@ -31,9 +31,9 @@ module mud_rates
 
    !> The point at which a rate is asked for, without the numbers that are integrated.
    type :: conditions_t
-      logical :: bonded = .false.   !< Suction bonding acts in this update.
       logical :: rests = .false.    !< The isotropic mechanism is below its memory.
-      real(wp) :: e, p_c            !< void ratio [-], suction [kPa]
+      type(bonding_t) :: bond = UNBONDED   !< effect of the suction
+      real(wp) :: e                 !< void ratio [-]
       real(wp) :: r_in(6)           !< memory [-]
    end type conditions_t
 contains
@@ -159,8 +159,7 @@ contains
       w%z = z
       w%k = bulk_modulus(par, at%e, w%p)
       w%g = shear_modulus(par, at%e, w%p)
-      w%bond = UNBONDED
-      if (at%bonded) w%bond = bonding(par, at%p_c, at%e)
+      w%bond = at%bond
       w%psi = state_parameter(par, w%bond%f, at%e, w%p)
       w%m_b = bounding_ratio(par, w%psi)
       w%m_d = dilatancy_ratio(par, w%psi)

@@ -1,24 +1,25 @@
 ! SPDX-License-Identifier: MIT
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
+   use mud_bonding, only: suction_law_t
    use mud_kinds, only: wp, SQRT_6
    use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NPROPS_WITHOUT_PRELOADING, &
       NPROPS_WITHOUT_FLUIDITY, PROPERTIES, KIND_REAL, &
-      MAX_TURNS, P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, &
+      P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, &
       P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, &
       P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI, P_C_ELL, P_ELL_MAX, P_P_ELL, P_R_ELL, &
       ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
+   use mud_retention, only: retention_t
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
    use mud_units, only: stress_unit, bounds_for, minimum_stress, threshold_of_fluidity, LARGEST_STRESS, &
       LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
-   public :: params_t, scanning_t, branch_t, least_t, read_params, completed, is_length, options_t, options_of, &
-             check_bounds, default_props
-   public :: NO_FLOOR, STRICTNESS, NO_BRANCH, NO_OFFSET, MAX_LEAST
+   public :: params_t, read_params, completed, is_length, options_t, options_of, check_bounds, default_props, &
+             NO_FLOOR, STRICTNESS
 
    real(wp), parameter :: NO_FLOOR = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
 
@@ -32,37 +33,6 @@ module mud_params
    integer, parameter :: WHOLE_ENTRIES(*) = pack(PROPERTIES%index, PROPERTIES%kind /= KIND_REAL)
    real(wp), parameter :: NEARLY_WHOLE = 1.0e-9_wp   !< A number this close to a whole one is it [-].
 
-   integer, parameter :: MAX_LEAST = 4   !< Largest number of least offsets of each direction; every set tried has none
-                                         !< or one.
-
-   !> A scanning branch of S_w, docs/theory/material.md section 2.1.1: the suction y of a main curve at the same S_w
-   !> follows y**q = x**q + offset**q. Suctions are ln(x/P_a).
-   type :: branch_t
-      logical :: dries
-      real(wp) :: log_x, s_w   !< Where it begins [-].
-      real(wp) :: log_offset   !< q ln(offset/P_a), NO_OFFSET: no offset [-].
-      real(wp) :: share        !< Factor on its changes, so that it ends where its loop closes [-].
-      logical :: straight      !< In ln x, of slope `share`: S_w hardly changes, and a scale would be rounding.
-   end type branch_t
-
-   !> Way of S_w along the last branch, which is limited by those that it left. docs/theory/material.md 2.1.1.
-   type :: scanning_t
-      logical :: acts
-      integer :: n              !< Number of branches, at least 1; the last is the present one.
-      type(branch_t) :: branches(MAX_TURNS)
-      logical :: moves          !< The present branch begins at a turn inside the increment, and depends on that.
-      real(wp) :: s_w_rate, offset_rate, share_rate   !< Derivatives with its ln x; not set otherwise [-].
-   end type scanning_t
-
-   !> Least offsets of branches that touch the opposite main curve from inside; first index 1 in wetting, 2 in drying.
-   type :: least_t
-      logical :: known
-      integer :: n(2)
-      real(wp) :: log_x(2, MAX_LEAST), log_offset(2, MAX_LEAST)
-   end type least_t
-
-   real(wp), parameter :: NO_OFFSET = -huge(1.0_wp)
-   type(branch_t), parameter :: NO_BRANCH = branch_t(.true., 0.0_wp, 0.0_wp, NO_OFFSET, 1.0_wp, .false.)
    real(wp), parameter :: WETTING_SHARE = 0.5_wp   !< P_aw of P_a where it is not given [-].
 
    !> Options with which a point has more numbers of STATEV.
@@ -72,12 +42,12 @@ module mud_params
       logical :: fluid        !< Fluidity.
    end type options_t
 
-   !> Parameters of one material; names and units as in mud_registry. With hysteresis a phase of an increment has a copy
-   !> that scans.
+   !> Parameters of one material; names and units as in mud_registry.
    type, extends(options_t) :: params_t
       real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
-      real(wp) :: b_1, b_2, s_max, s_min, p_a, omega, n_x, m_x, e_0, p_atm, p_min
-      logical :: bonding, fabric, isotropic, lode, cutoff
+      type(suction_law_t) :: suction   !< Retention and bonding.
+      real(wp) :: e_0, p_atm, p_min
+      logical :: fabric, isotropic, lode, cutoff
       logical :: remembers  !< The isotropic mechanism has a memory.
       integer :: memory_rule
       real(wp) :: eps_hat, j_exp
@@ -96,11 +66,6 @@ module mud_params
       !> have, and the rates change by their own size within the same strain; docs/theory/integration.md section 2 [-].
       real(wp) :: second_share
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
-      real(wp) :: p_aw, n_w, m_w, b_d, b_w   !< Parameters of the wetting curve and of hysteresis; those that are left
-                                             !< to others have their values.
-      real(wp) :: log_wetting                !< ln(P_aw/P_a) [-].
-      type(least_t) :: least
-      type(scanning_t) :: scanning           !< Branch that a phase of an increment follows.
       real(wp) :: c_chi, zeta_chi, s_chi     !< Read with preloading.
       real(wp) :: c_ell, ell_max, p_ell, r_ell   !< Read with fluidity.
       real(wp) :: c4        !< c**4, for the Lode function [-].
@@ -187,20 +152,21 @@ contains
       params%c_h = props(P_C_H)
       params%c_z = props(P_C_Z)
       params%z_max = props(P_Z_MAX)
-      params%b_1 = props(P_B_1)
-      params%b_2 = props(P_B_2)
-      params%s_max = props(P_S_MAX)
-      params%s_min = props(P_S_MIN)
-      params%p_a = props(P_P_A)
-      params%omega = props(P_OMEGA)
-      params%n_x = props(P_N_X)
-      params%m_x = props(P_M_X)
+      params%suction%b_1 = props(P_B_1)
+      params%suction%b_2 = props(P_B_2)
+      params%suction%s_max = props(P_S_MAX)
+      params%suction%s_min = props(P_S_MIN)
+      params%suction%p_a = props(P_P_A)
+      params%suction%omega = props(P_OMEGA)
+      params%suction%n_x = props(P_N_X)
+      params%suction%m_x = props(P_M_X)
       params%e_0 = props(P_E_0)
       params%p_atm = props(P_P_ATM)
+      params%suction%p_atm = params%p_atm
       params%p_min = minimum_stress(props)
       params%largest_stress = LARGEST_STRESS*stress_unit(props)
       params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
-      params%bonding = whole(props(P_BONDING)) == 1
+      params%suction%bonds = whole(props(P_BONDING)) == 1
       params%fabric = whole(props(P_FABRIC)) == 1
       params%isotropic = whole(props(P_ISOTROPIC)) /= ISOTROPIC_NONE
       params%remembers = whole(props(P_ISOTROPIC)) == ISOTROPIC_REMEMBERS
@@ -217,9 +183,9 @@ contains
       params%rho_e = props(P_RHO_E)
       params%shear_order = whole(props(P_SHEAR_ORDER))
       params%hysteresis = whole(props(P_HYSTERESIS)) == 1
-      params%scanning%acts = .false.
-      params%scanning%moves = .false.
-      if (params%hysteresis) call read_wetting(props, params)
+      params%suction%scanning%acts = .false.
+      params%suction%scanning%moves = .false.
+      if (params%hysteresis) call read_wetting(props, params%suction%retention_t)
       params%preloading = props(P_C_CHI) > 0.0_wp
       if (params%preloading) then
          params%c_chi = props(P_C_CHI)
@@ -247,20 +213,20 @@ contains
    end subroutine read_all
 
    !> The main wetting curve; what is zero follows the drying curve.
-   pure subroutine read_wetting(props, params)
+   pure subroutine read_wetting(props, retention)
       real(wp), intent(in) :: props(NPROPS)
-      type(params_t), intent(inout) :: params
+      type(retention_t), intent(inout) :: retention
 
-      params%p_aw = props(P_P_AW)
-      if (params%p_aw <= 0.0_wp) params%p_aw = WETTING_SHARE*params%p_a
-      params%n_w = props(P_N_W)
-      if (params%n_w <= 0.0_wp) params%n_w = params%n_x
-      params%m_w = props(P_M_W)
-      if (params%m_w <= 0.0_wp) params%m_w = params%m_x
-      params%b_d = props(P_B_D)
-      params%b_w = props(P_B_W)
-      params%log_wetting = log(params%p_aw/params%p_a)
-      params%least%known = .false.
+      retention%p_aw = props(P_P_AW)
+      if (retention%p_aw <= 0.0_wp) retention%p_aw = WETTING_SHARE*retention%p_a
+      retention%n_w = props(P_N_W)
+      if (retention%n_w <= 0.0_wp) retention%n_w = retention%n_x
+      retention%m_w = props(P_M_W)
+      if (retention%m_w <= 0.0_wp) retention%m_w = retention%m_x
+      retention%b_d = props(P_B_D)
+      retention%b_w = props(P_B_W)
+      retention%log_wetting = log(retention%p_aw/retention%p_a)
+      retention%least%known = .false.
    end subroutine read_wetting
 
    !> Names the first entry that is not finite, out of its bounds or not the integer it should be. What stands behind
