@@ -5,9 +5,9 @@ module boundary_loads
    use acting_places, only: facing_edges
    use kinds, only: wp
    use given_pressures, only: edges_with_flow
-   use model_types, only: model_t, factor_at, gravity_at
-   use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
-                          LOAD_FORCE_R, stage_t, load_t, plate_t
+   use model_types, only: model_t, factor_at, gravity_at, load_t, plate_t
+   use scene_parts, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
+                          LOAD_FORCE_R, stage_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, unknowns_of_body, tie, tie_pairs
    implicit none (type, external)

@@ -9,7 +9,7 @@ module reaction_rows
    use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, factor_at
    use prescribed_values, only: constraint_t
-   use scene_types, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
+   use scene_parts, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private

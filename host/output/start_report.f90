@@ -52,7 +52,7 @@ contains
       logical, intent(in) :: verbose   !< With its memory.
       integer :: i
 
-      write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
+      write (output_unit, '(a)') trim(model%origin%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
          whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
       if (verbose) write (output_unit, '(a)') size_of_run(model, run)

@@ -7,11 +7,11 @@ module start_balance
    use boundary_loads, only: plate_loads
    use contact_setup, only: contacts_act
    use initial_conditions, only: balance_t
-   use model_types, only: model_t, factor_at
+   use model_types, only: model_t, factor_at, load_t
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
    use run_state, only: run_t
-   use scene_types, only: acts_in, load_t, LOAD_PRESSURE
+   use scene_parts, only: acts_in, LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_U_Z, AT_P_W
    implicit none (type, external)
    private
