@@ -4,6 +4,7 @@
 module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts, value_of
+   use boundary_loads, only: force_of
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: has_rates
@@ -137,7 +138,7 @@ contains
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
             if (one%kind == LOAD_RAIN .and. acts_in(one%stages, stage%name)) &
-               rain = rain + factor_at(model, one%amplitude, time)*one%value*one%shape
+               rain = rain + force_of(one, factor_at(model, one%amplitude, time))
          end associate
       end do
    end function rain_at
