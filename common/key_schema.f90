@@ -4,9 +4,9 @@
 module key_schema
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: lower_case, short, whole, read_number
+   use texts, only: lower_case, short, whole, read_number, LENGTH
    use spelling, only: nearest_name
-   use namelists, only: group_t, entry_t, find_entry, LENGTH
+   use namelists, only: group_t, entry_t, find_entry
    implicit none (type, external)
    private
    public :: key_t, REQUIRED, NONE, UNBOUNDED, LONGEST_WORD

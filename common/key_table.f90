@@ -6,8 +6,8 @@ module key_table
    use kinds, only: wp
    use key_schema, only: key_t, NONE, REQUIRED, LONGEST_WORD, get_text, get_number, numbers_of, texts_of, words_of, &
                          group_gives => given
-   use namelists, only: group_t, LENGTH
-   use texts, only: lower_case, short, whole_text => whole
+   use namelists, only: group_t
+   use texts, only: lower_case, short, whole_text => whole, LENGTH
    implicit none (type, external)
    private
    public :: key_table_t

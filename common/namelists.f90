@@ -6,12 +6,11 @@
 module namelists
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use files, only: read_whole
-   use texts, only: lower_case, whole, mark_length
+   use texts, only: lower_case, whole, mark_length, LENGTH
    implicit none (type, external)
    private
-   public :: entry_t, group_t, read_groups, groups_of_text, find_entry, set_entry, set_values, MAX_VALUES, LENGTH
+   public :: entry_t, group_t, read_groups, groups_of_text, find_entry, set_entry, set_values, MAX_VALUES
 
-   integer, parameter :: LENGTH = 256      !< Longest key, value or path.
    integer, parameter :: MAX_VALUES = 1000   !< Longest list of values.
    integer, parameter :: LINE_LENGTH = 1024
    character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyz'

@@ -8,7 +8,9 @@ module texts
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: lower_case, short, whole, read_number, from_c, word_place, mark_length
+   public :: lower_case, short, whole, read_number, from_c, word_place, mark_length, LENGTH
+
+   integer, parameter :: LENGTH = 256   !< Longest key, value or path of a text that is read.
 
    !> An integer as text.
    interface whole

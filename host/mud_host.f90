@@ -33,26 +33,16 @@ program mud_host
                                         options%set)
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
-   if (fault%code == 0) call do_as_asked()
+   if (fault%code == 0) call report_start(scene, model, run, options%quiet, options%verbose, options%only_check)
+   if (fault%code == 0) call list_observers(options%folder, options%quiet, options%verbose, started, observers)
+   if (fault%code == 0 .and. options%restart /= '') call read_checkpoint(options%restart, model, run, observers, fault)
+   if (fault%code == 0 .and. options%only_check) then
+      call report_restart(model, run, observers, options%restart, options%folder, options%quiet, fault)
+   else if (fault%code == 0) then
+      call run_stages(model, run, observers, fault)
+   end if
    call leave()
 contains
-   !> Says what is going to run, and runs it from its start or a checkpoint; or only checks that it could.
-   subroutine do_as_asked()
-      logical :: resumes
-
-      resumes = options%restart /= ''
-      call report_start(scene, model, run, options%quiet, options%verbose, options%only_check)
-      call list_observers(options%folder, options%quiet, options%verbose, started, observers)
-      if (resumes) call read_checkpoint(options%restart, model, run, observers, fault)
-      if (fault%code /= 0) return
-      if (.not. options%only_check) then
-         call run_stages(model, run, fault, observers)
-      else if (resumes) then
-         call observers%check_fit(model, run, fault)
-         if (fault%code == 0 .and. .not. options%quiet) call report_restart(model, run, options%restart, options%folder)
-      end if
-   end subroutine do_as_asked
-
    !> Ends the program with the exit code of its fault.
    subroutine leave()
       ! A main program's variables are not freed at its end; a leak checker would report these.

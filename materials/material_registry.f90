@@ -7,9 +7,9 @@ module material_registry
    use material_mud, only: new_mud, MUD_KEYS
    use material_point, only: material_t
    use material_umat, only: new_umat, UMAT_KEYS
-   use namelists, only: group_t, LENGTH
+   use namelists, only: group_t
    use spelling, only: nearest_name
-   use texts, only: lower_case
+   use texts, only: lower_case, LENGTH
    implicit none (type, external)
    private
    public :: law_names, law_keys, is_law, new_material

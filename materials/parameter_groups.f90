@@ -5,8 +5,8 @@ module parameter_groups
    use kinds, only: wp
    use mud_interface, only: mud_default_props, mud_validate_props
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: lower_case, short, whole, read_number, word_place, from_c
-   use namelists, only: group_t, entry_t, read_groups, find_entry, LENGTH
+   use texts, only: lower_case, short, whole, read_number, word_place, from_c, LENGTH
+   use namelists, only: group_t, entry_t, read_groups, find_entry
    use spelling, only: nearest_name
    use library_tables, only: property_count, property_index, property_name, property_unit, property_meaning, &
                              property_option, range_for

@@ -59,6 +59,13 @@ COLUMN = """&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w' wi
 &point name = 'top' r = 0 z = 1 /
 &point name = 'base' r = 0 z = 0 /
 """
+# Its second stage begins with accelerations of a force that is there at once, and of a base that is moved.
+STRUCK = [(" without = 'inertia'", ""), ("times = 0, 0.05 values = 0, 1", "times = 0, 0.1 values = 1, 0.2"),
+          ("analysis = 'dynamic'", "analysis = 'quasi_static'"),
+          ("&fix group = 'left'", "&stage name = 'free' analysis = 'dynamic' tolerance = 1.0e-8 duration = 0.02 "
+           "dt = 0.001 /\n&fix group = 'left'"),
+          ("group = 'bottom' field = 'u_z' /", "group = 'bottom' field = 'u_z' value = 0.3 history = 'h' "
+           "motion = 'acceleration' /\n&load group = 'top' kind = 'pressure' value = 4 stages = 'free' /")]
 
 # Name: scene and pieces of its text that are replaced.
 CASES = {
@@ -90,6 +97,7 @@ CASES = {
     "contact_bar": (CONTACT + "bar.nml", [("duration = 1.5e-3", "duration = 1.0e-4")]),
     "restart": ("tests/host/scenes/restart.nml", [RULE]),
     "without": (COLUMN, []),
+    "struck": (COLUMN, STRUCK),
 }
 
 

@@ -3,8 +3,8 @@
 module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: short, whole
-   use namelists, only: group_t, read_groups, groups_of_text, set_entry, find_entry, LENGTH
+   use texts, only: short, whole, LENGTH
+   use namelists, only: group_t, read_groups, groups_of_text, set_entry, find_entry
    use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, given, line_of
    use triax_keys, only: CASE_KEYS, check_keys
    use triax_control, only: CONTROL_TOLERANCE

@@ -3,8 +3,8 @@
 module triax_stage_reader
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: lower_case, short, whole
-   use namelists, only: group_t, LENGTH
+   use texts, only: lower_case, short, whole, LENGTH
+   use namelists, only: group_t
    use stress_units, only: stress_unit_t
    use spelling, only: nearest_name
    use key_schema, only: describe_key, get_text, get_number, get_numbers, line_of, given, word_is

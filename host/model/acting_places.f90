@@ -6,7 +6,7 @@ module acting_places
    use faults, only: fault_t, raise
    use generalised_alpha, only: has_inertia
    use model_types, only: model_t, action_t
-   use scene_types, only: acts_in, place_of, NAME_LENGTH
+   use scene_parts, only: acts_in, place_of, NAME_LENGTH
    use texts, only: short
    implicit none (type, external)
    private

@@ -4,10 +4,11 @@ module boundary_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
-   use model_types, only: model_t, action_t, gravity_at
+   use model_types, only: model_t, action_t, gravity_at, initial_t, fix_t, load_t, plate_t, contact_pair_t, tie_t
    use name_search, only: mesh_group, defined_name
-   use scene_types, only: initial_t, fix_t, load_t, plate_t, contact_pair_t, tie_t, acts_in, place_of, &
-                          LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
+   use scene_parts, only: initial_values_t, acts_in, place_of, LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
+                          LOAD_FORCE_R
+   use scene_types, only: scene_t, scene_fix_t, scene_load_t, scene_plate_t, scene_contact_t, scene_tie_t
    use texts, only: short, whole
    use triangle_mesh, only: find_group, add_group
    use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C
@@ -21,14 +22,16 @@ contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
    !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, the boundary or
    !> history of a plate does not exist, or two boundaries share a node.
-   subroutine build_plates(model, fault)
+   subroutine build_plates(scene, model, fault)
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       integer :: i
 
       allocate (model%domain%bodies(0), model%domain%bodies_along_r(0))
-      do i = 1, size(model%plates)
-         call build_plate(model, model%plates(i), fault)
+      allocate (model%plates(size(scene%plates)))
+      do i = 1, size(scene%plates)
+         call build_plate(scene%plates(i), model, model%plates(i), fault)
          if (fault%code == 0) call check_apart(model, i, fault)
          if (fault%code /= 0) return
       end do
@@ -61,13 +64,15 @@ contains
    end subroutine check_apart
 
    !> Fault EXIT_GROUP: see build_plates.
-   subroutine build_plate(model, plate, fault)
+   subroutine build_plate(given, model, plate, fault)
+      type(scene_plate_t), intent(in) :: given
       type(model_t), intent(inout) :: model
       type(plate_t), intent(inout) :: plate
       type(fault_t), intent(inout) :: fault
       integer :: none(3, 0)
 
-      plate%amplitude = amplitude_of(plate%amplitude_name, place_of(plate), model, fault)
+      plate%plate_values_t = given%plate_values_t
+      plate%amplitude = amplitude_of(given%amplitude_name, place_of(plate), model, fault)
       if (fault%code /= 0) return
       associate (mesh => model%domain%mesh)
          if (find_group(mesh, trim(plate%name)) > 0 .or. find_group(mesh, trim(plate%name)//TURN) > 0) then
@@ -75,11 +80,11 @@ contains
                        ''' already; give the plate another name.')
             return
          end if
-         if (plate%joined_name /= '') plate%group = mesh_group(mesh, plate%joined_name, place_of(plate), fault)
+         if (given%joined_name /= '') plate%group = mesh_group(mesh, given%joined_name, place_of(plate), fault)
          if (fault%code /= 0) return
          if (plate%turns) then
             call build_body(model, plate, fault)
-         else if (plate%joined_name == '') then
+         else if (plate%group == 0) then
             call add_body(model, trim(plate%name), plate%corners(:, 1), plate%node)
          else
             plate%node = mesh%groups(plate%group)%nodes(1)
@@ -144,27 +149,30 @@ contains
    !> Initial conditions, supports, loads, contacts and ties of a scene; a fault names what cannot
    !> be resolved. Fault EXIT_GROUP: a group or history does not exist, or a group lacks the edges or nodes that are
    !> needed. Fault EXIT_INPUT: a field that the scene lacks, or keys that contradict each other.
-   subroutine build_boundaries(model, fault)
+   subroutine build_boundaries(scene, model, fault)
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      model%gravity_amplitude = amplitude_of(model%gravity_history, trim(model%file)//': gravity_history of &scene: ', &
+      model%gravity_amplitude = amplitude_of(scene%gravity_history, trim(scene%file)//': gravity_history of &scene: ', &
                                              model, fault)
-      do i = 1, size(model%initials)
-         if (fault%code == 0) call build_initial(model, model%initials(i), fault)
+      allocate (model%initials(size(scene%initials)), model%fixes(size(scene%fixes)), model%loads(size(scene%loads)), &
+                model%contacts(size(scene%contacts)), model%ties(size(scene%ties)))
+      do i = 1, size(scene%initials)
+         if (fault%code == 0) call build_initial(scene%initials(i), model, model%initials(i), fault)
       end do
-      do i = 1, size(model%fixes)
-         if (fault%code == 0) call build_fix(model, model%fixes(i), fault)
+      do i = 1, size(scene%fixes)
+         if (fault%code == 0) call build_fix(scene%fixes(i), model, model%fixes(i), fault)
       end do
-      do i = 1, size(model%loads)
-         if (fault%code == 0) call build_load(model, model%loads(i), fault)
+      do i = 1, size(scene%loads)
+         if (fault%code == 0) call build_load(scene%loads(i), model, model%loads(i), fault)
       end do
-      do i = 1, size(model%contacts)
-         if (fault%code == 0) call build_contact(model, model%contacts(i), fault)
+      do i = 1, size(scene%contacts)
+         if (fault%code == 0) call build_contact(scene%contacts(i), model, model%contacts(i), fault)
       end do
-      do i = 1, size(model%ties)
-         if (fault%code == 0) call build_tie(model, model%ties(i), fault)
+      do i = 1, size(scene%ties)
+         if (fault%code == 0) call build_tie(scene%ties(i), model, model%ties(i), fault)
       end do
       call list_actions(model)
    end subroutine build_boundaries
@@ -219,21 +227,25 @@ contains
       if (name /= '') amplitude = defined_name('history', name, model%amplitudes%name, place, fault)
    end function amplitude_of
 
-   subroutine build_initial(model, initial, fault)
+   subroutine build_initial(given, model, initial, fault)
+      type(initial_values_t), intent(in) :: given
       type(model_t), intent(in) :: model
       type(initial_t), intent(inout) :: initial
       type(fault_t), intent(inout) :: fault
 
+      initial%initial_values_t = given
       initial%group = mesh_group(model%domain%mesh, initial%group_name, place_of(initial), fault)
       if (initial%with_table) initial%water_weight = model%domain%fluids%rho_w*gravity_at(model, 0.0_wp)
    end subroutine build_initial
 
-   subroutine build_fix(model, fix, fault)
+   subroutine build_fix(given, model, fix, fault)
+      type(scene_fix_t), intent(in) :: given
       type(model_t), intent(in) :: model
       type(fix_t), intent(inout) :: fix
       type(fault_t), intent(inout) :: fault
       integer :: plate
 
+      fix%fix_values_t = given%fix_values_t
       if (fix%turns) then
          plate = turning_plate(model, fix%group_name, place_of(fix), fault)
          if (fault%code /= 0) return
@@ -243,7 +255,7 @@ contains
       else
          fix%group = mesh_group(model%domain%mesh, fix%group_name, place_of(fix), fault)
       end if
-      if (fault%code == 0) fix%amplitude = amplitude_of(fix%amplitude_name, place_of(fix), model, fault)
+      if (fault%code == 0) fix%amplitude = amplitude_of(given%amplitude_name, place_of(fix), model, fault)
       if (fault%code /= 0) return
       if (fix%acceleration .and. (fix%field >= AT_P_W .or. fix%hold .or. fix%amplitude == 0)) then
          call raise(fault, EXIT_INPUT, place_of(fix)//'motion = ''acceleration'' needs a displacement (u_r, '// &
@@ -255,12 +267,14 @@ contains
          place_of(fix)//'the scene has no field '//WORD_OF(fix%field)//'; see fields in &scene.')
    end subroutine build_fix
 
-   subroutine build_load(model, load, fault)
+   subroutine build_load(given, model, load, fault)
+      type(scene_load_t), intent(in) :: given
       type(model_t), intent(in) :: model
       type(load_t), intent(inout) :: load
       type(fault_t), intent(inout) :: fault
       integer :: plate
 
+      load%load_values_t = given%load_values_t
       if (load%turns) then
          plate = turning_plate(model, load%group_name, place_of(load), fault)
          if (fault%code /= 0) return
@@ -270,7 +284,7 @@ contains
       else
          load%group = mesh_group(model%domain%mesh, load%group_name, place_of(load), fault)
       end if
-      if (fault%code == 0) load%amplitude = amplitude_of(load%amplitude_name, place_of(load), model, fault)
+      if (fault%code == 0) load%amplitude = amplitude_of(given%amplitude_name, place_of(load), model, fault)
       if (fault%code /= 0) return
       if (load%kind < LOAD_FORCE_R .and. size(model%domain%mesh%groups(load%group)%edges, 2) == 0) then
          call raise(fault, EXIT_GROUP, place_of(load)//'group '''//trim(load%group_name)//''' has no edges to load.')
@@ -281,17 +295,19 @@ contains
       end if
    end subroutine build_load
 
-   subroutine build_contact(model, contact, fault)
+   subroutine build_contact(given, model, contact, fault)
+      type(scene_contact_t), intent(in) :: given
       type(model_t), intent(in) :: model
       type(contact_pair_t), intent(inout) :: contact
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      contact%slave = mesh_group(model%domain%mesh, contact%slave_name, place_of(contact), fault)
-      if (fault%code == 0) contact%master = mesh_group(model%domain%mesh, contact%master_name, place_of(contact), fault)
+      contact%contact_values_t = given%contact_values_t
+      contact%slave = mesh_group(model%domain%mesh, given%slave_name, place_of(contact), fault)
+      if (fault%code == 0) contact%master = mesh_group(model%domain%mesh, given%master_name, place_of(contact), fault)
       if (fault%code /= 0) return
       do i = 1, size(model%plates)
-         if (model%plates(i)%name /= contact%master_name) cycle
+         if (model%plates(i)%name /= given%master_name) cycle
          ! A plate that is joined to a boundary has no other surface than this.
          if (model%plates(i)%group == 0) contact%plate = i
          if (model%plates(i)%group > 0) contact%master = model%plates(i)%group
@@ -299,7 +315,7 @@ contains
       associate (groups => model%domain%mesh%groups)
          if (contact%slave == contact%master) then
             call raise(fault, EXIT_GROUP, place_of(contact)//'slave and master are one boundary, '''// &
-                       trim(contact%slave_name)//'''; name the two that meet.')
+                       trim(given%slave_name)//'''; name the two that meet.')
             return
          else if (size(groups(contact%slave)%edges, 2) == 0 .or. &
                   (contact%plate == 0 .and. size(groups(contact%master)%edges, 2) == 0)) then
@@ -318,7 +334,8 @@ contains
    end subroutine build_contact
 
    !> Pairs of nodes at equal heights.
-   subroutine build_tie(model, tie, fault)
+   subroutine build_tie(given, model, tie, fault)
+      type(scene_tie_t), intent(in) :: given
       type(model_t), intent(in) :: model
       type(tie_t), intent(inout) :: tie
       type(fault_t), intent(inout) :: fault
@@ -326,15 +343,16 @@ contains
       real(wp), parameter :: SAME_HEIGHT = 1.0e-6_wp   !< Share of the height of the boundary.
       real(wp) :: near
 
+      tie%pressures = given%pressures
       second = 0
-      first = mesh_group(model%domain%mesh, tie%first_name, place_of(tie), fault)
-      if (fault%code == 0) second = mesh_group(model%domain%mesh, tie%second_name, place_of(tie), fault)
+      first = mesh_group(model%domain%mesh, given%first_name, place_of(given), fault)
+      if (fault%code == 0) second = mesh_group(model%domain%mesh, given%second_name, place_of(given), fault)
       if (fault%code /= 0) return
       associate (a => model%domain%mesh%groups(first)%nodes, b => model%domain%mesh%groups(second)%nodes, &
                  z => model%domain%mesh%x(2, :))
          if (first == second .or. size(a) /= size(b)) then
-            call raise(fault, EXIT_GROUP, place_of(tie)//'''' //trim(tie%first_name)//''' has '//whole(size(a))// &
-                       ' nodes and '''//trim(tie%second_name)//''' '//whole(size(b))//'; a tie needs two '// &
+            call raise(fault, EXIT_GROUP, place_of(given)//'''' //trim(given%first_name)//''' has '//whole(size(a))// &
+                       ' nodes and '''//trim(given%second_name)//''' '//whole(size(b))//'; a tie needs two '// &
                        'boundaries with as many nodes, at the same heights.')
             return
          end if
@@ -343,8 +361,8 @@ contains
          do i = 1, size(a)
             k = minloc(abs(z(b) - z(a(i))), dim=1)
             if (abs(z(b(k)) - z(a(i))) > near .or. any(tie%pairs(2, :i - 1) == b(k))) then
-               call raise(fault, EXIT_GROUP, place_of(tie)//'no node of '''//trim(tie%second_name)//''' lies '// &
-                          'at the height '//short(z(a(i)))//' m of '''//trim(tie%first_name)//'''.')
+               call raise(fault, EXIT_GROUP, place_of(given)//'no node of '''//trim(given%second_name)//''' lies '// &
+                          'at the height '//short(z(a(i)))//' m of '''//trim(given%first_name)//'''.')
                return
             end if
             tie%pairs(:, i) = [a(i), b(k)]

@@ -5,10 +5,10 @@ module boundary_conditions
    use degrees_of_freedom, only: dofs_t, unknowns_of_body
    use generalised_alpha, only: scheme_t, has_rates
    use limited_pressures, only: begin_sides
-   use model_types, only: model_t, factor_at
+   use model_types, only: model_t, factor_at, fix_t
    use porous_domain, only: state_t
    use prescribed_values, only: constraint_t, is_released
-   use scene_types, only: acts_in, stage_t, fix_t, PRESCRIBED_P_A
+   use scene_parts, only: acts_in, stage_t, PRESCRIBED_P_A
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private

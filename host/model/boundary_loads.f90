@@ -5,14 +5,14 @@ module boundary_loads
    use acting_places, only: facing_edges
    use kinds, only: wp
    use given_pressures, only: edges_with_flow
-   use model_types, only: model_t, factor_at, gravity_at
-   use scene_types, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
-                          LOAD_FORCE_R, stage_t, load_t, plate_t
+   use model_types, only: model_t, factor_at, gravity_at, load_t, plate_t
+   use scene_parts, only: acts_in, LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
+                          LOAD_FORCE_R, stage_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use degrees_of_freedom, only: dofs_t, unknowns_of_body, tie, tie_pairs
    implicit none (type, external)
    private
-   public :: shape_loads, ties_of, load_at, plate_loads
+   public :: shape_loads, ties_of, load_at, force_of, plate_loads
 contains
    !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
    !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
@@ -145,10 +145,7 @@ contains
       allocate (load(dofs%n), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (acts_in(one%stages, stage%name)) then
-               load = load + factor_at(model, one%amplitude, time)*one%value*one%shape
-               if (allocated(one%rise)) load = load + factor_at(model, one%amplitude, time)*one%value_slope*one%rise
-            end if
+            if (acts_in(one%stages, stage%name)) load = load + force_of(one, factor_at(model, one%amplitude, time))
          end associate
       end do
       do i = 1, size(model%plates)
@@ -166,6 +163,16 @@ contains
          end associate
       end do
    end function load_at
+
+   !> Forces [kN] or inflows [m3/s] of a load at a factor of its history. (unknowns)
+   pure function force_of(load, factor) result(force)
+      type(load_t), intent(in) :: load
+      real(wp), intent(in) :: factor   !< [-]
+      real(wp), allocatable :: force(:)
+
+      force = factor*load%value*load%shape
+      if (allocated(load%rise)) force = force + factor*load%value_slope*load%rise
+   end function force_of
 
    !> Forces on a plate along r and upwards, its weight among them [kN], and the moment from r to z [kN m].
    !> docs/theory/host.md section 7.3.

@@ -4,9 +4,8 @@ module boundary_warnings
    use kinds, only: wp
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: add_warning, WARNING_LENGTH
-   use model_types, only: model_t, action_t
-   use scene_types, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, &
-                          fix_t, PRESCRIBED_P_A
+   use model_types, only: model_t, action_t, fix_t
+   use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
    implicit none (type, external)

@@ -4,8 +4,8 @@ module contact_setup
    use acting_places, only: facing_edges
    use kinds, only: wp
    use boundary_loads, only: plate_loads
-   use model_types, only: model_t
-   use scene_types, only: acts_in, plate_t, stage_t
+   use model_types, only: model_t, plate_t
+   use scene_parts, only: acts_in, stage_t
    use unknown_fields, only: AT_U_Z
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
    use contact_interfaces, only: contacts_t, surface_t, plate_link_t, surface_of, new_interface, tie_to_plate, &

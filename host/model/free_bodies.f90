@@ -8,7 +8,7 @@ module free_bodies
    use faults, only: fault_t, raise
    use generalised_alpha, only: has_inertia
    use model_types, only: model_t
-   use scene_types, only: acts_in, stage_t
+   use scene_parts, only: acts_in, stage_t
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z
    implicit none (type, external)

@@ -6,9 +6,9 @@ module given_pressures
    use kinds, only: wp
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
-   use model_types, only: model_t
+   use model_types, only: model_t, initial_t
    use porous_domain, only: domain_t, COUPLED, UNDRAINED, DRY
-   use scene_types, only: place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, initial_t
+   use scene_parts, only: place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR
    use texts, only: whole
    use unknown_fields, only: FIELD_NAMES, AT_P_C, DISPLACEMENTS
    implicit none (type, external)

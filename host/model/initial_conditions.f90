@@ -4,7 +4,7 @@
 module initial_conditions
    use exit_codes, only: EXIT_MATERIAL
    use kinds, only: wp
-   use model_types, only: model_t, gravity_at
+   use model_types, only: model_t, gravity_at, initial_t
    use given_pressures, only: pressures_at_start, water, suction
    use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY, is_present
    use material_point, only: material_t, range_t
@@ -12,7 +12,6 @@ module initial_conditions
    use faults, only: fault_t, raise
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
-   use scene_types, only: initial_t
    use vertical_lines, only: strips_t, new_strips, pieces_above
    implicit none (type, external)
    private

@@ -8,7 +8,8 @@ module mesh_builder
    use gmsh_reader, only: read_gmsh
    use graded_rectangle, only: graded_mesh
    use scene_refinement, only: MOST_ELEMENTS
-   use scene_types, only: scene_mesh_t, place_of
+   use scene_parts, only: place_of
+   use scene_types, only: scene_mesh_t
    use split_triangles, only: split_mesh
    use triangle_mesh, only: mesh_t
    implicit none (type, external)

@@ -6,7 +6,7 @@ module mesh_look
    use faults, only: fault_t, raise
    use warnings, only: add_warning, WARNING_LENGTH
    use model_types, only: model_t, action_t
-   use scene_types, only: place_of
+   use scene_parts, only: place_of
    use texts, only: short, whole
    implicit none (type, external)
    private

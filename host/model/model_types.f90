@@ -1,24 +1,25 @@
 ! SPDX-License-Identifier: MIT
 !> A model: mesh, unknowns, materials, loads, supports, plates and contacts of a scene, its names resolved to places,
-!> and its terms. A model is built once (model_builder); a run reads it and changes nothing in it.
+!> and its terms. A model is built once (model_builder); a run reads it, and knows nothing of the scene.
 !>
-!> A term is a feature of the program with a place of its own. Its file has its keys, its building from the scene, its
-!> part of a stage, of a step and of a checkpoint, and what it says when a step fails. A scene that does not ask for it
-!> has no object of it. Model and run know the type term_t alone; `term_registry` lists the terms. Procedures that a
-!> term leaves out do nothing.
+!> A term is a feature of the program with a place of its own. Its file has its keys, its building from the scene
+!> (scene_term), its part of a stage, of a step and of a checkpoint, and what it says when a step fails. A scene that
+!> does not ask for it has no object of it. Model and run know the type term_t alone. Procedures that a term leaves out
+!> do nothing.
 module model_types
    use archive, only: archive_t
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
-   use key_table, only: key_table_t
    use kinds, only: wp
-   use namelists, only: LENGTH
    use porous_domain, only: domain_t
-   use scene_types, only: scene_t, scene_item_t, amplitude_at
+   use scene_parts, only: scene_item_t, amplitude_t, stage_t, initial_values_t, fix_values_t, load_values_t, &
+                          plate_values_t, contact_values_t, named_point_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH
    use solution, only: solution_t
+   use texts, only: LENGTH
    implicit none (type, external)
    private
-   public :: model_t, action_t, term_t, term_box_t, factor_at, gravity_at
+   public :: model_t, term_t, term_box_t, factor_at, gravity_at
+   public :: action_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, tie_t, point_t, solver_t
 
    real(wp), parameter :: ALWAYS = -huge(1.0_wp)
 
@@ -34,45 +35,94 @@ module model_types
       logical :: damps = .false.                     !< By dashpots: in dynamic stages alone, and it carries no weight.
    end type action_t
 
-   !> The scene with the places of what it names, and what is made of it.
-   type, extends(scene_t) :: model_t
+   ! Groups of what follows are those of the mesh, amplitudes are places among the histories, 0: the factor is 1.
+   type, extends(initial_values_t) :: initial_t
+      integer :: group = 0
+      real(wp) :: water_weight = 0.0_wp              !< Of a water table, in the gravity of the start [kN/m3].
+   end type initial_t
+
+   type, extends(fix_values_t) :: fix_t
+      integer :: group = 0, amplitude = 0
+   end type fix_t
+
+   type, extends(load_values_t) :: load_t
+      integer :: group = 0, amplitude = 0
+      real(wp), allocatable :: shape(:)              !< Load vector of a unit value.
+      real(wp), allocatable :: rise(:)               !< Load vector of the value z - datum, where it changes with z.
+   end type load_t
+
+   type, extends(plate_values_t) :: plate_t
+      integer :: group = 0, amplitude = 0            !< Boundary that moves with it, 0: it has a face of its own.
+      integer :: node = 0                            !< It carries the plate's motion: its own, or of the boundary.
+      integer :: turn_node = 0, turn_group = 0       !< Its u_z is the lever times the angle, of a plate that turns.
+      real(wp) :: lever = 1.0_wp                     !< Largest distance of what it touches from its centre [m].
+   end type plate_t
+
+   type, extends(contact_values_t) :: contact_pair_t
+      integer :: slave = 0, master = 0
+      integer :: plate = 0                           !< The master as a plate with a face of its own, 0: it is none.
+   end type contact_pair_t
+
+   type :: tie_t
+      logical :: pressures = .false.                 !< They have one pressure, too.
+      integer, allocatable :: pairs(:, :)            !< (2, n) nodes of the first and the second boundary.
+   end type tie_t
+
+   type, extends(named_point_t) :: point_t
+      integer :: nodes(6) = 0, gauss = 0             !< Of its element; nearest quadrature point.
+      real(wp) :: weights(6) = 0.0_wp, pressure_weights(6) = 0.0_wp   !< Of the nodes.
+   end type point_t
+
+   !> Which scene a run is of, for its files and sentences.
+   type :: origin_t
+      character(LENGTH) :: file = ''
+      character(NAME_LENGTH) :: name = ''
+      character(FINGERPRINT_LENGTH) :: fingerprint = ''
+      integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
+      character(LENGTH), allocatable :: groups(:)    !< Where each stands, as '&load in line 7'.
+   end type origin_t
+
+   type :: output_t
+      type(point_t), allocatable :: points(:)
+      integer :: checkpoint_steps = 0
+      real(wp) :: checkpoint_seconds = 0.0_wp
+   end type output_t
+
+   type :: solver_t
+      logical :: reuse_factors = .true.
+      integer :: ordering = 1                        !< See sparse_factors.
+   end type solver_t
+
+   type :: model_t
+      type(origin_t) :: origin
       type(domain_t) :: domain
       type(dofs_t) :: dofs
+      type(amplitude_t), allocatable :: amplitudes(:)
       integer :: gravity_amplitude = 0
+      type(stage_t), allocatable :: stages(:)
+      type(initial_t), allocatable :: initials(:)
+      logical :: subtract_flow = .false.             !< The flow of the start is maintained, and takes no part.
+      type(fix_t), allocatable :: fixes(:)
+      type(load_t), allocatable :: loads(:)
+      type(plate_t), allocatable :: plates(:)
+      type(contact_pair_t), allocatable :: contacts(:)
+      type(tie_t), allocatable :: ties(:)
       type(action_t), allocatable :: actions(:)
       logical, allocatable :: ground(:, :)           !< (elements, stages) What a stage has; not allocated: all.
       type(term_box_t), allocatable :: terms(:)      !< Those that the scene has, in the order of their registry.
+      type(output_t) :: output
+      type(solver_t) :: solver
    end type model_t
 
    type, abstract :: term_t
    contains
-      procedure(declare_i), deferred, nopass :: declare
-      procedure(build_i), deferred :: build
-      procedure :: group, begin_run, begin_stage, before_step, prescribe, complete, accept, exchange, remark
+      procedure :: begin_run, begin_stage, before_step, prescribe, complete, accept, exchange, remark
    end type term_t
 
    !> An element of a list of terms.
    type :: term_box_t
       class(term_t), allocatable :: term
    end type term_box_t
-
-   abstract interface
-      !> Lists the keys that the term has in the group of a table, its own or another one.
-      subroutine declare_i(k)
-         import :: key_table_t
-         type(key_table_t), intent(inout) :: k
-      end subroutine declare_i
-
-      !> Takes what the term needs of a model whose mesh, regions and boundaries are known, and tells the model what it
-      !> adds: actions, ground. Faults: what the scene asks of the term and cannot be.
-      subroutine build_i(self, model, there, fault)
-         import :: term_t, model_t, fault_t
-         class(term_t), intent(inout) :: self
-         type(model_t), intent(inout) :: model
-         logical, intent(out) :: there   !< Whether the scene has it.
-         type(fault_t), intent(inout) :: fault
-      end subroutine build_i
-   end interface
 contains
    !> Factor of an amplitude at a time; amplitude 0 is 1 throughout. [-]
    pure real(wp) function factor_at(model, amplitude, time) result(factor)
@@ -91,16 +141,6 @@ contains
 
       gravity_at = factor_at(model, model%gravity_amplitude, time)*model%domain%gravity
    end function gravity_at
-
-   !> Name of the group of a scene that is the term's own; empty: its keys stand in others.
-   function group(self) result(name)
-      class(term_t), intent(in) :: self
-      character(:), allocatable :: name
-
-      associate (unused => self)
-      end associate
-      name = ''
-   end function group
 
    !> The start of a run, with its initial state.
    subroutine begin_run(self, model, solution, fault)

@@ -3,7 +3,7 @@
 module name_search
    use faults, only: fault_t, raise
    use exit_codes, only: EXIT_GROUP
-   use scene_types, only: scene_item_t, place_of
+   use scene_parts, only: scene_item_t, place_of
    use triangle_mesh, only: mesh_t, find_group
    implicit none (type, external)
    private

@@ -6,7 +6,7 @@ module named_points
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
    use porous_domain, only: domain_t
-   use scene_types, only: point_t
+   use model_types, only: point_t
    use shape_functions, only: quadratic, linear
    use texts, only: short
    use unknown_fields, only: FIELDS, DISPLACEMENTS

@@ -9,11 +9,11 @@ module region_builder
    use material_point, only: material_t, material_slot_t
    use material_registry, only: new_material
    use name_search, only: mesh_group, defined_name
-   use namelists, only: LENGTH
    use porous_domain, only: domain_t, COUPLED, DRY
    use retention_groups, only: new_retention
-   use scene_types, only: scene_t, scene_region_t, place_of
-   use texts, only: whole
+   use scene_parts, only: place_of
+   use scene_types, only: scene_t, scene_region_t
+   use texts, only: whole, LENGTH
    implicit none (type, external)
    private
    public :: build_regions

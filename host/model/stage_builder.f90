@@ -5,7 +5,7 @@ module stage_builder
    use convergence, only: measure_in
    use generalised_alpha, only: has_inertia, is_flow
    use model_types, only: model_t
-   use scene_types, only: acts_in
+   use scene_parts, only: acts_in
    implicit none (type, external)
    private
    public :: choose_schemes

@@ -8,8 +8,8 @@ module start_look
    use history_shapes, only: slope_beside
    use warnings, only: add_warning, WARNING_LENGTH
    use initial_conditions, only: balance_t
-   use model_types, only: model_t
-   use scene_types, only: acts_in, amplitude_t, place_of, scene_item_t, fix_t, plate_t, LOAD_AIR, PRESCRIBED_P_A
+   use model_types, only: model_t, fix_t, plate_t
+   use scene_parts, only: acts_in, amplitude_t, place_of, scene_item_t, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)
@@ -279,7 +279,8 @@ contains
       pure logical function moves(group)
          character(*), intent(in) :: group
 
-         moves = group == plate%name .or. (plate%joined_name /= '' .and. group == plate%joined_name)
+         moves = group == plate%name
+         if (plate%group > 0) moves = moves .or. group == model%domain%mesh%groups(plate%group)%name
       end function moves
    end subroutine look_at_plate
 

@@ -10,7 +10,6 @@ module checkpoints
    use kinds, only: wp
    use model_types, only: model_t
    use faults, only: fault_t, raise, EXIT_OUTPUT, EXIT_RESTART
-   use namelists, only: group_t
    use texts, only: short, whole
    implicit none (type, external)
    private
@@ -56,8 +55,10 @@ contains
       logical :: due
 
       due = interrupted()
-      if (model%checkpoint_steps > 0) due = due .or. mod(run%steps, model%checkpoint_steps) == 0
-      if (model%checkpoint_seconds > 0.0_wp) due = clock() - self%last >= model%checkpoint_seconds .or. due
+      associate (steps => model%output%checkpoint_steps, seconds => model%output%checkpoint_seconds)
+         if (steps > 0) due = due .or. mod(run%steps, steps) == 0
+         if (seconds > 0.0_wp) due = clock() - self%last >= seconds .or. due
+      end associate
       if (due) then
          call write_checkpoint(self%folder, model, run, earlier, fault)
          self%last = clock()
@@ -120,36 +121,36 @@ contains
       type(archive_t), intent(inout) :: archive
       type(fault_t), intent(inout) :: fault
       integer, allocatable :: theirs(:)
-      character(len(model%name)) :: scene
-      character(len(model%fingerprint)) :: fingerprint
+      character(len(model%origin%name)) :: scene
+      character(len(model%origin%fingerprint)) :: fingerprint
       character(:), allocatable :: there
       integer :: g, groups
 
-      scene = model%name
-      fingerprint = model%fingerprint
-      allocate (theirs, source=model%hashes)
+      scene = model%origin%name
+      fingerprint = model%origin%fingerprint
+      allocate (theirs, source=model%origin%hashes)
       call archive%exchange('scene', scene)
       call archive%exchange('fingerprint', fingerprint)
       call archive%exchange_allocatable('groups', theirs, '-', &
                                         'two numbers for every group of the scene, to find the one that differs')
-      if (fingerprint == model%fingerprint) return
+      if (fingerprint == model%origin%fingerprint) return
       if (.not. archive%is_intact() .or. .not. allocated(theirs)) then
          call raise(fault, EXIT_RESTART, path//DAMAGED)
          return
       end if
-      groups = size(model%groups)
+      groups = size(model%origin%groups)
       do g = 1, min(groups, size(theirs)/2)
-         if (any(model%hashes(2*g - 1:2*g) /= theirs(2*g - 1:2*g))) exit
+         if (any(model%origin%hashes(2*g - 1:2*g) /= theirs(2*g - 1:2*g))) exit
       end do
       there = whole(size(theirs)/2)
       if (g > groups) then
          call different(whole(groups)//' groups are here, and '//there//' were in the scene of the checkpoint')
       else if (2*g > size(theirs)) then
-         call different('the checkpoint has no '//named(model%groups(g))//', for its scene ended after '//there// &
-                        ' groups')
+         call different('the checkpoint has no '//trim(model%origin%groups(g))//', for its scene ended after '// &
+                        there//' groups')
       else
-         call different(named(model%groups(g))//' is another group, or has another key, value or file, here than '// &
-                        'in the checkpoint')
+         call different(trim(model%origin%groups(g))//' is another group, or has another key, value or file, here '// &
+                        'than in the checkpoint')
       end if
    contains
       subroutine different(text)
@@ -159,12 +160,5 @@ contains
                     '): '//text//'. Groups, keys, values and files must be those of the run, but for threads, '// &
                     'goals and checkpoint_*; start a changed scene from its beginning.')
       end subroutine different
-
-      function named(group) result(text)
-         type(group_t), intent(in) :: group
-         character(:), allocatable :: text
-
-         text = '&'//trim(group%name)//' in line '//whole(group%line)
-      end function named
    end subroutine exchange_scene
 end module checkpoints

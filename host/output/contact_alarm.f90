@@ -10,7 +10,7 @@ module contact_alarm
    use model_types, only: model_t
    use run_observer, only: observer_t, accepted_step_t
    use run_state, only: run_t
-   use scene_types, only: acts_in
+   use scene_parts, only: acts_in
    use texts, only: short
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)

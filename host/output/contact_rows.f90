@@ -6,9 +6,8 @@ module contact_rows
    use contact_interfaces, only: contacts_t, contact_interface_t, probe_interface, tangential_traction
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result
    use contact_types, only: contact_status_t, CONTACT_OK
-   use model_types, only: model_t
+   use model_types, only: model_t, plate_t
    use porous_domain, only: state_t
-   use scene_types, only: plate_t
    use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
    private

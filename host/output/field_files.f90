@@ -76,7 +76,7 @@ contains
 
       if (run%steps > 0) return
       allocate (self%times(0))
-      call write_mesh(self%folder, trim(model%name), model%fingerprint, model%domain, fault)
+      call write_mesh(self%folder, trim(model%origin%name), model%origin%fingerprint, model%domain, fault)
       if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%times, fault)
    end subroutine begins
 

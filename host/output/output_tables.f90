@@ -9,14 +9,13 @@ module output_tables
    use faults, only: fault_t
    use field_files, only: all_pressures
    use kinds, only: wp
-   use model_types, only: model_t
+   use model_types, only: model_t, point_t
    use named_points, only: unknowns_at, motion_at
    use porous_domain, only: domain_t, state_t
    use reaction_rows, only: reaction_columns, reaction_row
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
-   use scene_types, only: point_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -150,9 +149,9 @@ contains
       integer :: i, k
 
       head = 'time'
-      do i = 1, size(model%points)
+      do i = 1, size(model%output%points)
          do k = 1, size(COLUMNS)
-            head = head//','//trim(model%points(i)%name)//'.'//trim(COLUMNS(k))
+            head = head//','//trim(model%output%points(i)%name)//'.'//trim(COLUMNS(k))
          end do
       end do
    end function history_columns
@@ -166,8 +165,8 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      if (size(model%points) == 0) return
-      write (table%row, NUMBERS) state%time, (values(model%points(i)), i=1, size(model%points))
+      if (size(model%output%points) == 0) return
+      write (table%row, NUMBERS) state%time, (values(model%output%points(i)), i=1, size(model%output%points))
       call write_row(table, fault)
    contains
       pure function values(point)
@@ -254,11 +253,11 @@ contains
       type(csv_t) :: table
       integer :: i
 
-      if (size(model%points) == 0) return
+      if (size(model%output%points) == 0) return
       call new_csv(folder//'/points.csv', 'name,r,z,stress_r,stress_z', table, fault)
-      do i = 1, size(model%points)
+      do i = 1, size(model%output%points)
          if (fault%code /= 0) exit
-         associate (one => model%points(i), rule => model%domain%rule)
+         associate (one => model%output%points(i), rule => model%domain%rule)
             write (table%row, '(a,",",*(es24.16e3,:,","))') trim(one%name), one%x, &
                model%domain%gauss(mod(one%gauss - 1, rule) + 1, (one%gauss - 1)/rule + 1)%x
          end associate

@@ -15,7 +15,7 @@ module pressure_alarm
    use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: AT_P_W
-   use scene_types, only: stage_t
+   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: pressure_alarm_t, lines_t, find_lines, find_alternation

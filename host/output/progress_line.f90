@@ -11,7 +11,7 @@ module progress_line
    use model_types, only: model_t
    use files, only: to_terminal, terminal_width
    use texts, only: short, whole
-   use scene_types, only: stage_t
+   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: progress_observer_t, steps_left, span_of

@@ -5,11 +5,12 @@
 module reaction_rows
    use kinds, only: wp
    use boundary_conditions, only: prescribing_fixes, forces_of_supports
+   use boundary_loads, only: force_of
    use csv, only: quoted
    use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, factor_at
    use prescribed_values, only: constraint_t
-   use scene_types, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
+   use scene_parts, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -177,8 +178,7 @@ contains
          do i = 1, size(model%loads)
             associate (load => model%loads(i), field => model%dofs%field)
                if (.not. acts_in(load%stages, stage%name)) cycle
-               vector = load%value*load%shape
-               if (allocated(load%rise)) vector = vector + load%value_slope*load%rise
+               vector = force_of(load, 1.0_wp)
                factor = factor_at(model, load%amplitude, time - dt)
                factor = factor + scheme%l_f*(factor_at(model, load%amplitude, time) - factor)
                associate (sum_of => sums(:, load%group))

@@ -9,7 +9,7 @@ module run_folder
    use model_types, only: model_t
    use run_observer, only: observer_t
    use run_state, only: run_t
-   use scene_types, only: FINGERPRINT_LENGTH
+   use scene_parts, only: FINGERPRINT_LENGTH
    implicit none (type, external)
    private
    public :: folder_observer_t
@@ -50,7 +50,7 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (run%steps == 0) self%origin = model%fingerprint
+      if (run%steps == 0) self%origin = model%origin%fingerprint
       call lock_folder(self%folder, run%steps == 0, fault)
    end subroutine begins
 

@@ -7,13 +7,12 @@ module run_summary
    use faults, only: fault_t
    use kinds, only: wp
    use control_state, only: LIMITS, LIMIT_NAMES
-   use model_types, only: model_t
+   use model_types, only: model_t, point_t
    use named_points, only: unknowns_at
    use porous_domain, only: UNDRAINED
    use run_cost, only: print_cost
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
-   use scene_types, only: point_t
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    use wall_clock, only: clock
@@ -64,7 +63,7 @@ contains
       associate (never => fault)
       end associate
       if (run%steps > 0) return
-      associate (peaks => self%peaks, points => size(model%points))
+      associate (peaks => self%peaks, points => size(model%output%points))
          allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
       end associate
    end subroutine begins
@@ -82,8 +81,8 @@ contains
 
       associate (unused => earlier, never => fault)
       end associate
-      do i = 1, size(model%points)
-         x = unknowns_at(model%points(i), run%state%x)
+      do i = 1, size(model%output%points)
+         x = unknowns_at(model%output%points(i), run%state%x)
          do f = 1, FIELDS
             if (.not. abs(x(f)) > abs(self%peaks%value(f, i))) cycle
             self%peaks%value(f, i) = x(f)
@@ -135,15 +134,16 @@ contains
 
       most = [maxval([0.0_wp, abs(peaks%value(:DISPLACEMENTS, :))]), &
               maxval([0.0_wp, abs(peaks%value(DISPLACEMENTS + 1:, :))])]
-      do i = 1, size(model%points)
-         do f = 1, FIELDS
-            if (.not. abs(peaks%value(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
-            if (all(model%dofs%of(f, model%points(i)%nodes) == 0) .and. .not. keeps_fluids(model, model%points(i), f)) &
-               cycle
-            write (unit, '(a)') trim(model%points(i)%name)//'.'//trim(FIELD_NAMES(f))//' '// &
-               with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
-               with_unit(peaks%time(f, i), 's', peaks%dt(f, i))
-         end do
+      do i = 1, size(model%output%points)
+         associate (point => model%output%points(i))
+            do f = 1, FIELDS
+               if (.not. abs(peaks%value(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
+               if (all(model%dofs%of(f, point%nodes) == 0) .and. .not. keeps_fluids(model, point, f)) cycle
+               write (unit, '(a)') trim(point%name)//'.'//trim(FIELD_NAMES(f))//' '// &
+                  with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
+                  with_unit(peaks%time(f, i), 's', peaks%dt(f, i))
+            end do
+         end associate
       end do
       text = counted(run%steps, 'step')
       associate (c => run%control)
@@ -157,7 +157,7 @@ contains
       end associate
       write (unit, '(a)') text//'.'
       call repeat_warnings(unit)
-      write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '//trim(model%file)// &
+      write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '//trim(model%origin%file)// &
          '" measures them.'
    end subroutine print_summary
 

@@ -5,10 +5,12 @@ module start_report
    use, intrinsic :: iso_fortran_env, only: output_unit
    use contact_alarm, only: contact_alarm_t
    use contact_setup, only: contacts_act
+   use faults, only: fault_t
    use generalised_alpha, only: has_rates, has_inertia
    use initial_conditions, only: balance_t
    use model_types, only: model_t
    use run_cost, only: size_of_run
+   use run_observer, only: observers_t
    use run_state, only: run_t
    use scene_types, only: scene_t
    use scene_warnings, only: list_warnings
@@ -52,7 +54,7 @@ contains
       logical, intent(in) :: verbose   !< With its memory.
       integer :: i
 
-      write (output_unit, '(a)') trim(model%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
+      write (output_unit, '(a)') trim(model%origin%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
          whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
          whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
       if (verbose) write (output_unit, '(a)') size_of_run(model, run)
@@ -67,12 +69,19 @@ contains
       end do
    end subroutine announce
 
-   !> Says where a run would go on that a checkpoint has put in place.
-   subroutine report_restart(model, run, restart, folder)
+   !> Says where a run would go on that a checkpoint has put in place. Faults: those of observers whose files do not
+   !> fit.
+   subroutine report_restart(model, run, observers, restart, folder, quiet, fault)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
-      character(*), intent(in) :: restart, folder   !< Path of the checkpoint; folder of the results.
+      type(observers_t), intent(in) :: observers
+      character(*), intent(in) :: restart, folder   !< Path of the checkpoint, empty: none; folder of the results.
+      logical, intent(in) :: quiet
+      type(fault_t), intent(inout) :: fault
 
+      if (restart == '') return
+      call observers%check_fit(model, run, fault)
+      if (fault%code /= 0 .or. quiet) return
       write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
          ', step '//whole(run%at%step)//', time '//short(run%state%time)// &
          ' s; the run would go on in '//folder//'.'

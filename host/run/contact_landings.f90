@@ -5,7 +5,7 @@ module contact_landings
    use kinds, only: wp
    use contact_interfaces, only: probe_contacts
    use run_state, only: run_t
-   use scene_types, only: stage_t
+   use scene_parts, only: stage_t
    use step_landings, only: LAST_STEP, SHORTEST
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)

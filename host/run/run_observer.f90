@@ -220,6 +220,7 @@ contains
       integer :: i, k
 
       t0 = clock()
+      if (.not. allocated(self%list)) allocate (self%list(0))
       if (run%steps > 0) call self%check_fit(model, run, fault)
       if (fault%code /= 0) return
       do i = 1, size(self%list)

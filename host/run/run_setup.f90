@@ -26,8 +26,8 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      run%system%reuse = model%reuse_factors
-      run%system%sparse%ordering = model%ordering
+      run%system%reuse = model%solver%reuse_factors
+      run%system%sparse%ordering = model%solver%ordering
       call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
       call make_assembly(model%domain, model%dofs, run%pattern, run%assembly)
       run%constraint = new_constraint(model, model%dofs)

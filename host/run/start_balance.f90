@@ -4,14 +4,14 @@
 module start_balance
    use acting_places, only: acting_stages
    use kinds, only: wp
-   use boundary_loads, only: plate_loads
+   use boundary_loads, only: force_of, plate_loads
    use contact_setup, only: contacts_act
    use initial_conditions, only: balance_t
-   use model_types, only: model_t, factor_at
+   use model_types, only: model_t, factor_at, load_t
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
    use run_state, only: run_t
-   use scene_types, only: acts_in, load_t, LOAD_PRESSURE
+   use scene_parts, only: acts_in, LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_U_Z, AT_P_W
    implicit none (type, external)
    private
@@ -79,7 +79,7 @@ contains
       do i = 1, size(model%loads)
          water = water_in(model, run, model%loads(i))
          if (.not. water > 0.0_wp) cycle
-         forces = forces + load_at_start(model, model%loads(i))
+         forces = forces + force_of(model%loads(i), factor_at(model, model%loads(i)%amplitude, 0.0_wp))
          most = max(most, water)
       end do
    end subroutine add_weight_of_water
@@ -110,17 +110,6 @@ contains
          end do
       end associate
    end function water_in
-
-   !> Forces of a load at time 0 [kN]. (unknowns)
-   function load_at_start(model, load) result(forces)
-      type(model_t), intent(in) :: model
-      type(load_t), intent(in) :: load
-      real(wp) :: forces(model%dofs%n)
-
-      forces = load%value*load%shape
-      if (allocated(load%rise)) forces = forces + load%value_slope*load%rise
-      forces = factor_at(model, load%amplitude, 0.0_wp)*forces
-   end function load_at_start
 
    !> Supports and dashpots of the first stage hold what they have, rigid bodies stand on their contacts.
    subroutine let_go_of_held(model, forces)
@@ -167,7 +156,7 @@ contains
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
             if (.not. acts_in(one%stages, model%stages(1)%name) .or. water_in(model, run, one) > 0.0_wp) cycle
-            call carry(load_at_start(model, one))
+            call carry(force_of(one, factor_at(model, one%amplitude, 0.0_wp)))
          end associate
       end do
       do i = 1, size(model%plates)

@@ -16,7 +16,7 @@ module step_attempt
    use run_state, only: run_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
-   use scene_types, only: stage_t
+   use scene_parts, only: stage_t
    use solution, only: stage_state_t
    implicit none (type, external)
    private

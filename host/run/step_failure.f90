@@ -13,7 +13,7 @@ module step_failure
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
    use run_state, only: run_t
    use unknown_fields, only: FIELD_NAMES
-   use scene_types, only: stage_t
+   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: explain_failure, explain_short_step, LEAST_OF_STAGE

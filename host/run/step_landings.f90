@@ -11,7 +11,7 @@ module step_landings
    use history_shapes, only: kinks_of
    use model_types, only: model_t
    use run_state, only: run_t
-   use scene_types, only: amplitude_t, amplitude_at, acts_in, stage_t
+   use scene_parts, only: amplitude_t, amplitude_at, acts_in, stage_t
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private

@@ -13,7 +13,7 @@ module step_size
    use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
-   use scene_types, only: stage_t
+   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: begin_control, negligible_changes, next_step, scheme_of, prepare_rates, judge_step, shorten_step, &

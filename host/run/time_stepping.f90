@@ -25,35 +25,23 @@ module time_stepping
 contains
    !> Runs all stages from where the run stands. docs/theory/host.md section 4. Faults are those of begin_stage,
    !> try_step and the observers; the first ends the run, and the observers are still told its end.
-   subroutine run_stages(model, run, fault, observers)
+   subroutine run_stages(model, run, observers, fault)
       type(model_t), intent(inout) :: model   !< The laws follow the tolerance of the stages.
       type(run_t), intent(inout) :: run
+      type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(observers_t), intent(inout), optional :: observers   !< Default: nobody.
-      type(observers_t) :: nobody
+      integer :: i
 
-      if (present(observers)) then
-         call run_before(observers)
-      else
-         allocate (nobody%list(0))
-         call run_before(nobody)
-      end if
-   contains
-      subroutine run_before(observers)
-         type(observers_t), intent(inout) :: observers
-         integer :: i
-
-         call observers%begin_run(model, run, fault)
-         if (fault%code /= 0) return
-         do i = max(1, run%at%stage), size(model%stages)
-            call run_stage(model, i, run, observers, fault)
-            call observers%end_stage(model, run, fault)
-            if (fault%code /= 0) exit
-         end do
-         call observers%end_run(model, run, fault)
-         call release(run%system%sparse)
-         run%system%analysed = .false.
-      end subroutine run_before
+      call observers%begin_run(model, run, fault)
+      if (fault%code /= 0) return
+      do i = max(1, run%at%stage), size(model%stages)
+         call run_stage(model, i, run, observers, fault)
+         call observers%end_stage(model, run, fault)
+         if (fault%code /= 0) exit
+      end do
+      call observers%end_run(model, run, fault)
+      call release(run%system%sparse)
+      run%system%analysed = .false.
    end subroutine run_stages
 
    !> Runs a stage to its end, from where the run stands in it.

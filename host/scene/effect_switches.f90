@@ -8,11 +8,11 @@ module effect_switches
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_schema, only: get_text, given
    use library_tables, only: property_index
-   use namelists, only: set_entry, LENGTH
+   use namelists, only: set_entry
    use parameter_groups, only: read_parameters
-   use scene_types, only: scene_t, NAME_LENGTH, WITH_U, WITH_P_W, WITH_P_C, PRESCRIBED_P_A, LOAD_WATER, LOAD_RAIN, &
-                          LOAD_AIR
-   use texts, only: lower_case, read_number
+   use scene_parts, only: NAME_LENGTH, PRESCRIBED_P_A, LOAD_WATER, LOAD_RAIN, LOAD_AIR
+   use scene_types, only: scene_t, WITH_U, WITH_P_W, WITH_P_C
+   use texts, only: lower_case, read_number, LENGTH
    use generalised_alpha, only: QUASI_STATIC, has_inertia
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)

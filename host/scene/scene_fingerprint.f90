@@ -4,7 +4,7 @@
 module scene_fingerprint
    use, intrinsic :: iso_fortran_env, only: int64
    use namelists, only: group_t
-   use scene_types, only: FINGERPRINT_LENGTH
+   use scene_parts, only: FINGERPRINT_LENGTH
    use texts, only: lower_case
    implicit none (type, external)
    private

@@ -2,7 +2,7 @@
 !> Names of a scene: a name that other groups refer to is unique, and a name that becomes a file or a column is valid
 !> for that.
 module scene_names
-   use scene_types, only: NAME_LENGTH
+   use scene_parts, only: NAME_LENGTH
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use material_registry, only: is_law
    use namelists, only: group_t, find_entry

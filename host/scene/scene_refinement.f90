@@ -4,7 +4,8 @@
 module scene_refinement
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
-   use scene_types, only: scene_mesh_t, place_of
+   use scene_parts, only: place_of
+   use scene_types, only: scene_mesh_t
    use texts, only: short
    implicit none (type, external)
    private

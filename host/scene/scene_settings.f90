@@ -3,9 +3,9 @@
 module scene_settings
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_schema, only: texts_of
-   use namelists, only: group_t, groups_of_text, set_values, LENGTH
+   use namelists, only: group_t, groups_of_text, set_values
    use spelling, only: nearest_name
-   use texts, only: lower_case, whole
+   use texts, only: lower_case, whole, LENGTH
    implicit none (type, external)
    private
    public :: apply_settings

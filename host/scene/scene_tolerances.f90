@@ -6,7 +6,7 @@ module scene_tolerances
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use namelists, only: group_t, set_entry
    use key_schema, only: given
-   use scene_types, only: stage_t
+   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: ask_key, ask_steps, ask_stress

@@ -4,7 +4,8 @@
 module stage_histories
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
-   use scene_types, only: scene_t, amplitude_t, place_of
+   use scene_parts, only: amplitude_t, place_of
+   use scene_types, only: scene_t
    use texts, only: short
    implicit none (type, external)
    private

@@ -12,7 +12,7 @@ module model_builder
    use given_pressures, only: add_centers, check_places
    use mesh_builder, only: build_mesh
    use mesh_look, only: check_carried
-   use model_types, only: model_t
+   use model_types, only: model_t, solver_t
    use named_points, only: find_point
    use porous_domain, only: domain_t, prepare_domain
    use region_builder, only: build_regions
@@ -38,29 +38,59 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      model%scene_t = scene
+      call take_settings(scene, model)
       call build_domain(scene, model, fault)
       if (fault%code == 0) call build_regions(scene, model%domain, fault)
       ! Before plates become nodes: those are the last ones.
       if (fault%code == 0) call add_centers(model%domain)
-      if (fault%code == 0) call build_plates(model, fault)
+      if (fault%code == 0) call build_plates(scene, model, fault)
       if (fault%code == 0) call choose_threads(scene%threads, model%domain)
-      if (fault%code == 0) call build_boundaries(model, fault)
-      if (fault%code == 0) call build_terms(model, fault)
+      if (fault%code == 0) call build_boundaries(scene, model, fault)
+      if (fault%code == 0) call build_terms(scene, model, fault)
       if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
       if (fault%code == 0) call check_ground(model, fault)
       if (fault%code == 0) call check_sides(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
-      do i = 1, size(model%points)
-         if (fault%code == 0) call find_point(model%domain, model%points(i), fault)
-      end do
+      associate (points => model%output%points)
+         do i = 1, size(points)
+            if (fault%code == 0) call find_point(model%domain, points(i), fault)
+         end do
+      end associate
       if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call shape_loads(model, model%dofs)
    end subroutine build_model
+
+   !> What holds as the scene says it.
+   subroutine take_settings(scene, model)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(inout) :: model
+      integer :: i
+
+      associate (origin => model%origin, output => model%output)
+         origin%file = scene%file
+         origin%name = scene%name
+         origin%fingerprint = scene%fingerprint
+         origin%hashes = scene%hashes
+         allocate (origin%groups(size(scene%groups)))
+         do i = 1, size(scene%groups)
+            origin%groups(i) = '&'//trim(scene%groups(i)%name)//' in line '//whole(scene%groups(i)%line)
+         end do
+         output%checkpoint_steps = scene%checkpoint_steps
+         output%checkpoint_seconds = scene%checkpoint_seconds
+         allocate (output%points(size(scene%points)))
+         do i = 1, size(scene%points)
+            output%points(i)%named_point_t = scene%points(i)
+         end do
+      end associate
+      model%amplitudes = scene%amplitudes
+      model%stages = scene%stages
+      model%subtract_flow = scene%subtract_flow
+      model%solver = solver_t(scene%reuse_factors, scene%ordering)
+   end subroutine take_settings
 
    !> Threads of the element loop: those asked for, or as many as have work enough, within OMP_NUM_THREADS. A thread
    !> that is woken for less than a slice of the scheduler costs more than it gives where other programs run.

@@ -10,14 +10,16 @@ module scene_keys
    use key_schema, only: key_t, REQUIRED, UNBOUNDED, check_group, given, line_of
    use key_table, only: key_table_t
    use material_registry, only: is_law, law_names, law_keys
-   use namelists, only: group_t, MAX_VALUES, LENGTH
+   use namelists, only: group_t, MAX_VALUES
+   use texts, only: LENGTH
    use number_pairs, only: read_pairs
    use permeability_laws, only: permeability_t
    use retention_groups, only: RETENTION_KEYS
    use scene_tolerances, only: ask_steps, ask_stress
-   use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_item_t, initial_t, amplitude_t, stage_t, fix_t, &
-                          load_t, plate_t, contact_pair_t, tie_t, point_t, item_of, place_of, &
-                          LOAD_FORCE_Z, LOAD_MOMENT, PRESCRIBED_TURN
+   use scene_parts, only: scene_item_t, amplitude_t, stage_t, place_of, LOAD_FORCE_Z, LOAD_MOMENT, PRESCRIBED_TURN, &
+                          initial_values_t, named_point_t
+   use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_fix_t, scene_load_t, scene_plate_t, &
+                          scene_contact_t, scene_tie_t, item_of
    use spelling, only: nearest_name
    use term_registry, only: own_groups, declare_keys
    use unknown_fields, only: AT_U_Z
@@ -266,7 +268,7 @@ contains
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
-      type(initial_t) :: initial
+      type(initial_values_t) :: initial
       character(*), parameter :: BY_HAND(*) = [character(9) :: 'p_w', 'p_w_slope', 'p_c', 'p_c_slope', 'datum']
       real(wp), allocatable :: sigma(:)
       integer :: stress, i
@@ -432,7 +434,7 @@ contains
    subroutine take_fix(k, scene)
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
-      type(fix_t) :: fix
+      type(scene_fix_t) :: fix
 
       fix%scene_item_t = item_of(k%group)
       call k%text('group', fix%group_name, 'boundary, region or node group', REQUIRED)
@@ -458,7 +460,7 @@ contains
    subroutine take_load(k, scene)
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
-      type(load_t) :: load
+      type(scene_load_t) :: load
 
       load%scene_item_t = item_of(k%group)
       call k%text('group', load%group_name, 'boundary (for force: node group)', REQUIRED)
@@ -478,7 +480,7 @@ contains
    subroutine take_tie(k, scene)
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
-      type(tie_t) :: tie
+      type(scene_tie_t) :: tie
 
       tie%scene_item_t = item_of(k%group)
       call k%text('first', tie%first_name, 'first boundary: nodes at equal heights move together', REQUIRED)
@@ -491,7 +493,7 @@ contains
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
-      type(plate_t) :: plate
+      type(scene_plate_t) :: plate
       real(wp), allocatable :: r(:), center(:), outline(:)
       real(wp) :: z
       logical :: up
@@ -552,7 +554,7 @@ contains
    subroutine take_contact(k, scene)
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
-      type(contact_pair_t) :: contact
+      type(scene_contact_t) :: contact
 
       contact%scene_item_t = item_of(k%group)
       call k%text('name', contact%name, 'name in contact.csv', REQUIRED)
@@ -570,7 +572,7 @@ contains
    subroutine take_point(k, scene)
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
-      type(point_t) :: point
+      type(named_point_t) :: point
 
       call k%text('name', point%name, 'name in histories.csv', REQUIRED)
       call k%number('r', point%x(1), -BIG, BIG, 'place of the point, in the mesh [m]', REQUIRED)

@@ -15,7 +15,8 @@ module scene_warnings
    use mesh_look, only: look_at_slits
    use model_types, only: model_t
    use namelists, only: group_t
-   use scene_types, only: scene_t, place_of
+   use scene_parts, only: place_of
+   use scene_types, only: scene_t
    use start_look, only: list_start_warnings
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole

@@ -17,14 +17,16 @@ module absorbing
    use kinds, only: wp
    use linear_forces, only: linear_forces_t
    use material_point, only: response_t, report_t
-   use model_types, only: model_t, action_t, term_t, factor_at
+   use model_types, only: model_t, action_t, factor_at
    use name_search, only: mesh_group, defined_name, check_stages
-   use namelists, only: group_t, LENGTH
+   use namelists, only: group_t
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
-   use scene_types, only: place_of, item_of, groups_named
+   use scene_parts, only: place_of
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, item_of, groups_named
    use solution, only: solution_t
-   use texts, only: short, whole
+   use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -42,7 +44,7 @@ module absorbing
       real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
    end type side_t
 
-   type, extends(term_t) :: absorbing_t
+   type, extends(scene_term_t) :: absorbing_t
       type(side_t), allocatable :: sides(:)
       logical :: at_start = .false.              !< Of a stage: what the sides held is not known yet.
    contains
@@ -94,8 +96,9 @@ contains
    end subroutine take
 
    !> The boundaries. Fault EXIT_GROUP: a boundary, history or stage that is not defined, or a group without edges.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(absorbing_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -104,7 +107,7 @@ contains
       character(LENGTH) :: boundary, history
       integer :: i
 
-      allocate (groups, source=groups_named(model%scene_t, NAME))
+      allocate (groups, source=groups_named(scene, NAME))
       there = size(groups) > 0
       allocate (self%sides(size(groups)))
       do i = 1, size(groups)

@@ -6,10 +6,13 @@ module buffer
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
-   use model_types, only: model_t, term_t
+   use model_types, only: model_t
    use name_search, only: defined_name, check_stages
-   use namelists, only: group_t, LENGTH
-   use scene_types, only: scene_item_t, item_of, place_of, groups_named, acts_in
+   use namelists, only: group_t
+   use texts, only: LENGTH
+   use scene_parts, only: scene_item_t, place_of, acts_in
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, item_of, groups_named
    use solution, only: solution_t
    use sparsity_pattern, only: make_pattern
    use springs, only: spring_t
@@ -27,7 +30,7 @@ module buffer
       type(spring_t) :: spring
    end type given_t
 
-   type, extends(term_t) :: buffer_t
+   type, extends(scene_term_t) :: buffer_t
       type(given_t), allocatable :: all(:)
       integer, allocatable :: plates(:, :)           !< (2, buffers) Upper and lower ones.
    contains
@@ -68,8 +71,9 @@ contains
    end subroutine take
 
    !> Fault EXIT_GROUP: a plate or stage that is not defined. EXIT_INPUT: one plate at both ends.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(buffer_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -77,7 +81,7 @@ contains
       type(key_table_t) :: table
       integer :: i
 
-      allocate (groups, source=groups_named(model%scene_t, NAME))
+      allocate (groups, source=groups_named(scene, NAME))
       there = size(groups) > 0
       allocate (self%all(size(groups)), self%plates(2, size(groups)))
       do i = 1, size(groups)

@@ -7,12 +7,14 @@ module contact_drainage
    use exit_codes, only: EXIT_CONVERGENCE
    use kinds, only: wp
    use key_table, only: key_table_t
-   use model_types, only: model_t, term_t
+   use model_types, only: model_t
    use namelists, only: group_t
    use contact_types, only: contact_message
    use contact_interfaces, only: start_points
    use faults, only: fault_t, raise, EXIT_INPUT
-   use scene_types, only: groups_named, item_of, place_of
+   use scene_parts, only: place_of
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, groups_named, item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -21,7 +23,7 @@ module contact_drainage
 
    character(*), parameter :: IN_GROUP = 'contact'
 
-   type, extends(term_t) :: contact_drainage_t
+   type, extends(scene_term_t) :: contact_drainage_t
       logical, allocatable :: follows(:)        !< (contacts) Whether its drainage follows its state.
       logical, allocatable :: gives_way(:, :)   !< (fixes, contacts) A pressure prescribed along edges of the slave.
    contains
@@ -49,8 +51,9 @@ contains
 
    !> Which &fix give way to which contacts: those that prescribe a pressure on all nodes of an edge of the slave. Fault
    !> EXIT_INPUT: the scene has no pressures, or a contact whose drainage follows its state has no such &fix.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(contact_drainage_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -58,7 +61,7 @@ contains
       type(key_table_t) :: table
       integer :: c, f
 
-      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      allocate (groups, source=groups_named(scene, IN_GROUP))
       allocate (self%follows(size(model%contacts)), source=.false.)
       allocate (self%gives_way(size(model%fixes), size(model%contacts)), source=.false.)
       do c = 1, size(model%contacts)

@@ -7,15 +7,17 @@ module drained_regions
    use faults, only: fault_t
    use given_pressures, only: pressures_at_start, nodes_with_flow
    use key_table, only: key_table_t
-   use model_types, only: model_t, term_t
+   use model_types, only: model_t
    use porous_domain, only: domain_t, DRAINED, UNDRAINED
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t
    use solution, only: solution_t
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: drained_regions_t
 
-   type, extends(term_t) :: drained_regions_t
+   type, extends(scene_term_t) :: drained_regions_t
    contains
       procedure, nopass :: declare
       procedure :: build, prescribe, complete
@@ -30,13 +32,14 @@ contains
    end subroutine declare
 
    !> Raises no fault.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(drained_regions_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
 
-      associate (u1 => self, u2 => fault)
+      associate (u1 => self, u2 => fault, u3 => scene)
       end associate
       there = any(model%domain%regions%drainage == DRAINED .or. model%domain%regions%drainage == UNDRAINED)
       if (there) call give_pressures(model)

@@ -6,13 +6,14 @@ module friction
    use kinds, only: wp
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
-   use model_types, only: model_t, term_t
+   use model_types, only: model_t
    use namelists, only: group_t
    use contact_friction, only: has_friction
    use contact_types, only: contact_options_t, contact_message
    use contact_interfaces, only: begin_friction, accept_friction
    use faults, only: fault_t, raise
-   use scene_types, only: groups_named
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, groups_named
    use solution, only: solution_t
    implicit none (type, external)
    private
@@ -20,7 +21,7 @@ module friction
 
    character(*), parameter :: IN_GROUP = 'contact'
 
-   type, extends(term_t) :: friction_t
+   type, extends(scene_term_t) :: friction_t
    contains
       procedure, nopass :: declare
       procedure :: build, before_step, accept
@@ -44,8 +45,9 @@ contains
    end subroutine take
 
    !> The options of the contacts. Raises no fault.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(friction_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -56,7 +58,7 @@ contains
       associate (u1 => self, u2 => fault)
       end associate
       there = .false.
-      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      allocate (groups, source=groups_named(scene, IN_GROUP))
       do c = 1, size(model%contacts)
          table%group = groups(c)
          call take(table, model%contacts(c)%options)

@@ -4,14 +4,17 @@
 module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts, value_of
+   use boundary_loads, only: force_of
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: has_rates
    use key_table, only: key_table_t
-   use model_types, only: model_t, term_t, factor_at, gravity_at
+   use model_types, only: model_t, factor_at, gravity_at, load_t
    use namelists, only: group_t
    use prescribed_values, only: constraint_t, is_released
-   use scene_types, only: acts_in, groups_named, load_t, place_of, stage_t, LOAD_RAIN
+   use scene_parts, only: acts_in, place_of, stage_t, LOAD_RAIN
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, groups_named
    use solution, only: solution_t
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -23,7 +26,7 @@ module run_off
    character(*), parameter :: NO_SUBTRACTION = 'initial_flow = ''subtract'' of &scene takes a flow away that a '// &
       'seepage face or rain has to see; start from water at rest, or let a stage find the flow (''drain'').'
 
-   type, extends(term_t) :: run_off_t
+   type, extends(scene_term_t) :: run_off_t
       real(wp), allocatable :: ponding(:)   !< (loads) Depth of water that stays on the surface, of rain [m].
    contains
       procedure, nopass :: declare
@@ -48,8 +51,9 @@ contains
 
    !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
    !> pond without weight.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(run_off_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -69,7 +73,7 @@ contains
             end if
          end associate
       end do
-      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      allocate (groups, source=groups_named(scene, IN_GROUP))
       allocate (self%ponding(size(model%loads)), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
@@ -134,7 +138,7 @@ contains
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
             if (one%kind == LOAD_RAIN .and. acts_in(one%stages, stage%name)) &
-               rain = rain + factor_at(model, one%amplitude, time)*one%value*one%shape
+               rain = rain + force_of(one, factor_at(model, one%amplitude, time))
          end associate
       end do
    end function rain_at

@@ -11,13 +11,15 @@ module staging
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: make_scheme, STATIC
    use key_table, only: key_table_t
-   use model_types, only: model_t, term_t, gravity_at
+   use model_types, only: model_t, gravity_at
    use name_search, only: check_stages
-   use namelists, only: group_t, LENGTH
+   use namelists, only: group_t
    use porous_domain, only: state_t, copy_state
-   use scene_types, only: acts_in, groups_named, item_of, place_of
+   use scene_parts, only: acts_in, place_of
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, groups_named, item_of
    use solution, only: solution_t
-   use texts, only: whole
+   use texts, only: whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -25,7 +27,7 @@ module staging
 
    character(*), parameter :: IN_GROUP = 'region'
 
-   type, extends(term_t) :: staging_t
+   type, extends(scene_term_t) :: staging_t
       real(wp), allocatable :: held_up(:)   !< (unknowns) Forces at the start of what leaves with this stage [kN].
       logical, allocatable :: absent(:)     !< (unknowns) No present element has them.
    contains
@@ -49,21 +51,22 @@ contains
 
    !> Which elements the stages have. Fault EXIT_GROUP: a stage that nobody defines; EXIT_INPUT: ground that is not
    !> there from the start with a stress of its own, or the flow of a start that lacks it; a stage without ground.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(staging_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
       type(key_table_t) :: table
       character(LENGTH), allocatable :: stages(:)
-      logical :: has(size(model%regions), size(model%stages))
+      logical :: has(size(scene%regions), size(model%stages))
       integer :: i, s
 
       associate (unused => self)
       end associate
       there = .false.
-      allocate (groups, source=groups_named(model%scene_t, IN_GROUP))
+      allocate (groups, source=groups_named(scene, IN_GROUP))
       do i = 1, size(groups)
          table%group = groups(i)
          call take(table, stages)
@@ -74,20 +77,21 @@ contains
       end do
       if (.not. there) return
       if (model%subtract_flow) then
-         call raise(fault, EXIT_INPUT, trim(model%file)//': initial_flow = ''subtract'' of &scene keeps the flow '// &
+         call raise(fault, EXIT_INPUT, trim(scene%file)//': initial_flow = ''subtract'' of &scene keeps the flow '// &
                     'of the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
          return
       end if
       model%ground = has(model%domain%region_of, :)
       do s = 1, size(model%stages)
          if (.not. any(nodes_of_ground(model, s)) .and. fault%code == 0) call raise(fault, EXIT_INPUT, &
-            trim(model%file)//': no &region is part of the ground in stage '''//trim(model%stages(s)%name)//'''.')
+            trim(scene%file)//': no &region is part of the ground in stage '''//trim(model%stages(s)%name)//'''.')
       end do
-      if (fault%code == 0) call check_start(model, fault)
+      if (fault%code == 0) call check_start(scene, model, fault)
    end subroutine build
 
    !> New ground comes without stress.
-   subroutine check_start(model, fault)
+   subroutine check_start(scene, model, fault)
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
       integer :: i, k
@@ -99,7 +103,7 @@ contains
                if (model%ground(k, 1)) cycle
                if (.not. any(model%domain%mesh%groups(initial%group)%elements == k)) cycle
                call raise(fault, EXIT_INPUT, place_of(initial)//'this stress covers the &region with group '''// &
-                          trim(model%regions(model%domain%region_of(k))%group_name)//''', which joins in a later '// &
+                          trim(scene%regions(model%domain%region_of(k))%group_name)//''', which joins in a later '// &
                           'stage and comes without stress; name the group of the ground that is there from the start.')
                return
             end do

@@ -6,13 +6,15 @@ module strength
    use key_schema, only: REQUIRED
    use key_table, only: key_table_t
    use material_point, only: material_t
-   use model_types, only: model_t, term_t, factor_at
+   use model_types, only: model_t, factor_at
    use name_search, only: defined_name
-   use namelists, only: group_t, LENGTH
+   use namelists, only: group_t
    use porous_domain, only: state_t
-   use scene_types, only: scene_item_t, item_of, place_of, groups_named
+   use scene_parts, only: scene_item_t, place_of
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, item_of, groups_named
    use solution, only: solution_t
-   use texts, only: short
+   use texts, only: short, LENGTH
    implicit none (type, external)
    private
    public :: strength_t
@@ -26,9 +28,10 @@ module strength
    type, extends(scene_item_t) :: change_t
       character(LENGTH) :: material_name = '', parameter_name = '', amplitude_name = ''
       integer :: place = 0, amplitude = 0            !< In the law, in the histories.
+      logical, allocatable :: in_region(:)           !< (regions) Whether it is of that material.
    end type change_t
 
-   type, extends(term_t) :: strength_t
+   type, extends(scene_term_t) :: strength_t
       type(change_t), allocatable :: changes(:)
    contains
       procedure, nopass :: declare
@@ -65,8 +68,9 @@ contains
    !> Places of what the groups &strength name, and whether the laws allow what their histories ask. Fault EXIT_GROUP: a
    !> material or history that is not defined; EXIT_INPUT: a parameter that cannot change, two histories of one, a
    !> factor that is not 1 at the start, a value that the law refuses.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(strength_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -74,7 +78,7 @@ contains
       type(key_table_t) :: table
       integer :: i, k
 
-      allocate (groups, source=groups_named(model%scene_t, NAME))
+      allocate (groups, source=groups_named(scene, NAME))
       there = size(groups) > 0
       allocate (self%changes(size(groups)))
       do i = 1, size(groups)
@@ -83,13 +87,13 @@ contains
             table%group = groups(i)
             call take(table, s)
             s%amplitude = defined_name('history', s%amplitude_name, model%amplitudes%name, place_of(s), fault)
-            if (fault%code == 0) k = defined_name('material', s%material_name, model%materials%name, place_of(s), fault)
+            if (fault%code == 0) k = defined_name('material', s%material_name, scene%materials%name, place_of(s), fault)
             if (fault%code /= 0) return
             call check_history(model, self%changes, i, fault)
-            do k = 1, size(model%regions)
+            s%in_region = scene%regions%material_name == s%material_name
+            do k = 1, size(s%in_region)
                if (fault%code /= 0) return
-               if (model%regions(k)%material_name == s%material_name) &
-                  call check_law(model, s, model%domain%regions(k)%law, fault)
+               if (s%in_region(k)) call check_law(model, s, model%domain%regions(k)%law, fault)
             end do
          end associate
       end do
@@ -199,7 +203,7 @@ contains
       real(wp), dimension(size(list)) :: before, after
       logical :: own(size(list))
       character(SENTENCE) :: text
-      integer :: i
+      integer :: i, k
 
       before = [(factor_at(model, list(i)%amplitude, from), i=1, size(before))]
       after = [(factor_at(model, list(i)%amplitude, until), i=1, size(after))]
@@ -208,7 +212,7 @@ contains
       allocate (next%laws(size(model%domain%regions)))
       do i = 1, size(next%laws)
          allocate (next%laws(i)%law, source=model%domain%regions(i)%law)
-         own = list%material_name == model%regions(i)%material_name
+         own = [(list(k)%in_region(i), k=1, size(list))]
          ! What the law refuses was refused before the run.
          call next%laws(i)%law%change_over_step(pack(list%place, own), pack(before, own), pack(after, own), text)
       end do

@@ -8,8 +8,10 @@ module term_registry
    use faults, only: fault_t
    use friction, only: friction_t
    use key_table, only: key_table_t
-   use model_types, only: model_t, term_t, term_box_t
+   use model_types, only: model_t, term_box_t
    use run_off, only: run_off_t
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t
    use staging, only: staging_t
    use strength, only: strength_t
    implicit none (type, external)
@@ -17,10 +19,15 @@ module term_registry
    public :: own_groups, declare_keys, build_terms
 
    integer, parameter :: GROUP_LENGTH = 12
+
+   !> A place of the list.
+   type :: registered_t
+      class(scene_term_t), allocatable :: term
+   end type registered_t
 contains
    !> All of them, unbuilt, in the order in which they act.
    subroutine list_terms(list)
-      type(term_box_t), allocatable, intent(out) :: list(:)
+      type(registered_t), allocatable, intent(out) :: list(:)
 
       allocate (list(0))
       call add(strength_t())
@@ -33,8 +40,8 @@ contains
       call add(buffer_t())
    contains
       subroutine add(one)
-         class(term_t), intent(in) :: one
-         type(term_box_t) :: box
+         class(scene_term_t), intent(in) :: one
+         type(registered_t) :: box
 
          allocate (box%term, source=one)
          list = [list, box]
@@ -44,7 +51,7 @@ contains
    !> Names of the groups of a scene that belong to terms.
    function own_groups() result(names)
       character(GROUP_LENGTH), allocatable :: names(:)
-      type(term_box_t), allocatable :: list(:)
+      type(registered_t), allocatable :: list(:)
       integer :: i
 
       call list_terms(list)
@@ -57,7 +64,7 @@ contains
    !> Lists the keys that terms have in the group of a table.
    subroutine declare_keys(k)
       type(key_table_t), intent(inout) :: k
-      type(term_box_t), allocatable :: list(:)
+      type(registered_t), allocatable :: list(:)
       integer :: i
 
       call list_terms(list)
@@ -67,18 +74,24 @@ contains
    end subroutine declare_keys
 
    !> Gives a model the terms that its scene asks for. Faults: theirs.
-   subroutine build_terms(model, fault)
+   subroutine build_terms(scene, model, fault)
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
-      type(term_box_t), allocatable :: list(:)
-      logical, allocatable :: there(:)
+      type(registered_t), allocatable :: list(:)
+      type(term_box_t) :: box
+      logical :: there
       integer :: i
 
       call list_terms(list)
-      allocate (there(size(list)), source=.false.)
+      allocate (model%terms(0))
       do i = 1, size(list)
-         if (fault%code == 0) call list(i)%term%build(model, there(i), fault)
+         call list(i)%term%build(scene, model, there, fault)
+         if (fault%code /= 0) return
+         if (.not. there) cycle
+         if (allocated(box%term)) deallocate (box%term)
+         allocate (box%term, source=list(i)%term)
+         model%terms = [model%terms, box]
       end do
-      model%terms = pack(list, there)
    end subroutine build_terms
 end module term_registry

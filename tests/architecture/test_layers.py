@@ -117,6 +117,20 @@ def misplaced(suites, folders):
             if (place := suite.removeprefix("tests/").rpartition("/")[0]) not in folders | beside]
 
 
+AS_WRITTEN = {"scene_types", "namelists", "key_table", "key_schema"}   # What a run does not know.
+
+
+def seen_by(files, start):
+    """Of AS_WRITTEN what a chain of uses from a module leads to."""
+    seen, left = set(), [start]
+    while left:
+        module = left.pop()
+        if module not in seen:
+            seen.add(module)
+            left += used(files, module)
+    return sorted(f"{start} knows {module}" for module in seen & AS_WRITTEN)
+
+
 def planted():
     """Every rule against an offence it must see, and against the nearest innocent tree."""
     def tree(*modules):
@@ -177,6 +191,8 @@ def test_folders_use_what_their_layer_may():
         ("no module hands on a name of another", handed_on(files)),
         ("HDF5, LAPACK and UMFPACK live in one file each", foreign(files)),
         ("every module that is used is there", strange_use(files)),
+        ("a run knows the model, and neither the scene as it is written nor its keys",
+         seen_by(files, "time_stepping") or ([] if seen_by(files, "model_builder") else ["nothing is ever seen"])),
         ("tests mirror the tree", misplaced([str(file.relative_to(root)) for file in sources("tests/**/test_*")
                                           if file.parent.name != "__pycache__"],
                                          {str(folder.relative_to(root)) for folder in sources("*", "*/*", "*/*/*")

@@ -6,13 +6,13 @@ from checking import root
 
 
 def bodies(folder):
-    """Subroutines of the Fortran files below a folder by their names."""
+    """Subroutines and programs of the Fortran files below a folder by their names."""
     found = {}
     for file in folder.rglob("*.f90"):
         text = file.read_text(encoding="utf-8")
-        for match in re.finditer(r"^ *(?:pure )?subroutine (\w+)\(.*?^ *end subroutine \1$", text,
+        for match in re.finditer(r"^( *)(?:pure )?(subroutine|program) (\w+).*?^\1end \2 \3$", text,
                                  re.MULTILINE | re.DOTALL):
-            found.setdefault(match[1], []).append(match[0])
+            found.setdefault(match[3], []).append(match[0])
     return found
 
 
@@ -22,11 +22,28 @@ def missing(names, sources):
             if not any(re.search(rf"\bcall {b}\(", body) for body in sources.get(a, []))]
 
 
-def test_the_calls_from_umat_to_the_rates_are_those_of_the_tour():
-    sentence = re.search(r"(\w+) calls lead from `(\w+)` to the rates: (.*?)\.\n\n",
+def check_way(goal, folder):
+    """The sentence of the tour on the calls that lead to a goal."""
+    sentence = re.search(rf"(\w+) calls lead from `(\w+)` to\s+{goal}: (.*?)\.\n\n",
                          (root / "docs/tour.md").read_text(encoding="utf-8"), re.DOTALL)
     names = [sentence[2], *re.findall(r"`(\w+)`", sentence[3])]
-    sources = bodies(root / "umat")
+    sources = bodies(root / folder)
     assert missing([*names[:4], *names[5:]], sources), "a call left out must be found"
     assert not missing(names, sources)
     assert (sentence[1], len(names)) == ("Nine", 10)
+
+
+def test_the_calls_from_umat_to_the_rates_are_those_of_the_tour():
+    check_way("the rates", "umat")
+
+
+def test_the_calls_from_the_host_to_a_law_are_those_of_the_tour():
+    check_way("the law", "host")
+
+
+def test_a_scene_has_nine_stops_of_which_main_calls_the_first():
+    text = (root / "docs/tour.md").read_text(encoding="utf-8").partition("## A scene")[2].partition("\n## ")[0]
+    stops = re.findall(r"^\| (\d+) \| `([\w/.]+)`", text, re.MULTILINE)
+    assert [int(number) for number, _ in stops] == list(range(1, 10))
+    main = bodies(root / "host")["mud_host"][0]
+    assert all(f"call {name}(" in main for name in ("read_scene", "build_model", "prepare_run", "run_stages"))

@@ -374,7 +374,7 @@ FIELD = [
     ("strength of the start of a step",
      (STRENGTHS, "after = [(factor_at(model, list(i)%amplitude, until), i=1, size(after))]", "after = before")),
     ("every material follows every history of strength",
-     (STRENGTHS, "own = list%material_name == model%regions(i)%material_name", "own = list%place > 0")),
+     (STRENGTHS, "own = [(list(k)%in_region(i), k=1, size(list))]", "own = list%place > 0")),
     ("a history of strength may begin anywhere", (STRENGTHS, "abs(first - 1) > SAME", "first > 2*SAME/SAME")),
     ("the largest value of a strength is not tried", (STRENGTHS, "do i = 1, size(factors)", "do i = 2, size(factors)")),
 ]

@@ -16,7 +16,7 @@ module host_problems
    use time_stepping, only: run_stages
    implicit none (type, external)
    private
-   public :: build, ask, run_with_ledger, sand, soil_laws, square
+   public :: build, ask, run_unseen, run_with_ledger, sand, soil_laws, square
 
    character(*), parameter, public :: NL = new_line('a')
 contains
@@ -31,6 +31,16 @@ contains
       if (fault%code /= 0) error stop 'a test scene was refused'
    end subroutine build
 
+   !> Runs all stages without observers.
+   subroutine run_unseen(model, run, fault)
+      type(model_t), intent(inout) :: model
+      type(run_t), intent(inout) :: run
+      type(fault_t), intent(inout) :: fault
+      type(observers_t) :: nobody
+
+      call run_stages(model, run, nobody, fault)
+   end subroutine run_unseen
+
    !> Runs all stages; the ledger at their end.
    subroutine run_with_ledger(model, run, ledger, fault)
       type(model_t), intent(inout) :: model
@@ -40,7 +50,7 @@ contains
       type(observers_t) :: observers
 
       call observers%add(ledger_observer_t())
-      call run_stages(model, run, fault, observers)
+      call run_stages(model, run, observers, fault)
       select type (observer => observers%list(1)%observer)
       type is (ledger_observer_t)
          ledger = observer%ledger

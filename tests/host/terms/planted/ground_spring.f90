@@ -7,10 +7,13 @@ module ground_spring
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use linear_forces, only: linear_forces_t
-   use model_types, only: model_t, action_t, term_t
+   use model_types, only: model_t, action_t
    use name_search, only: mesh_group, check_stages
-   use namelists, only: group_t, LENGTH
-   use scene_types, only: acts_in, groups_named, item_of, place_of
+   use namelists, only: group_t
+   use texts, only: LENGTH
+   use scene_parts, only: acts_in, place_of
+   use scene_term, only: scene_term_t
+   use scene_types, only: scene_t, groups_named, item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -24,7 +27,7 @@ module ground_spring
       integer :: place = 0             !< Place of the spring in the constraint.
    end type spring_t
 
-   type, extends(term_t) :: ground_spring_t
+   type, extends(scene_term_t) :: ground_spring_t
       type(spring_t), allocatable :: springs(:)
    contains
       procedure, nopass :: declare
@@ -61,8 +64,9 @@ contains
    end subroutine take
 
    !> Fault EXIT_GROUP: a group or stage that is not defined.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, scene, model, there, fault)
       class(ground_spring_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -71,7 +75,7 @@ contains
       character(LENGTH) :: boundary
       integer :: i
 
-      allocate (groups, source=groups_named(model%scene_t, NAME))
+      allocate (groups, source=groups_named(scene, NAME))
       there = size(groups) > 0
       allocate (self%springs(size(groups)))
       do i = 1, size(groups)

@@ -1,0 +1,166 @@
+! SPDX-License-Identifier: MIT
+!> Parts of a scene that its model keeps as they are written: where a group stands, histories, stages, and the values of
+!> supports, loads, plates, contacts, points and the start. They name nothing that is defined elsewhere but stages and,
+!> for sentences, groups of the mesh. Defaults are those of the keys (scene_keys has range and meaning); a value outside
+!> of the range says that the key is not given.
+module scene_parts
+   use kinds, only: wp
+   use contact_types, only: contact_options_t
+   use convergence, only: BY_STAGE
+   use faults, only: at_line
+   use history_shapes, only: arc_at
+   use texts, only: LENGTH
+   use unknown_fields, only: FIELDS
+   implicit none (type, external)
+   private
+   public :: scene_item_t, amplitude_t, stage_t
+   public :: initial_values_t, fix_values_t, load_values_t, plate_values_t, contact_values_t, named_point_t
+   public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
+   public :: PRESCRIBED_P_A, PRESCRIBED_TURN
+   public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
+             LOAD_MOMENT
+
+   integer, parameter :: NAME_LENGTH = 64         !< Longest name that a scene gives.
+   integer, parameter :: FINGERPRINT_LENGTH = 16
+
+   ! Numbers of words, in the order in which scene_keys lists those of the key (a test holds the two together).
+   integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< &fix field, after those of unknown_fields: air pressure.
+   integer, parameter :: PRESCRIBED_TURN = FIELDS + 2  !< &fix field: rotation of a plate; read as u_z.
+   integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
+   integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< &load kind: along the axes [kPa].
+   integer, parameter :: LOAD_WATER = 4, LOAD_AIR = 6         !< &load kind: inflow [m/s].
+   integer, parameter :: LOAD_RAIN = 5        !< &load kind: inflow until the surface ponds [m/s].
+   integer, parameter :: LOAD_FORCE_R = 7, LOAD_FORCE_Z = 8   !< &load kind: on every node of a group [kN].
+   integer, parameter :: LOAD_MOMENT = 9      !< &load kind: on a plate that turns; read as LOAD_FORCE_Z [kN m].
+   real(wp), parameter :: NEVER = huge(1.0_wp)
+
+   !> Where a group of the scene begins, for sentences about it.
+   type :: scene_item_t
+      character(LENGTH) :: file = ''
+      integer :: line = 0
+   end type scene_item_t
+
+   !> How a value changes with time.
+   type, extends(scene_item_t) :: amplitude_t
+      character(NAME_LENGTH) :: name = ''
+      real(wp), allocatable :: times(:), values(:)
+      integer, allocatable :: arcs(:)                !< Ways between the pairs (history_shapes); none: straight.
+      character(LENGTH), allocatable :: stages(:)    !< From whose starts the times count; none: that of the run.
+   end type amplitude_t
+
+   type :: stage_t
+      character(NAME_LENGTH) :: name = ''
+      integer :: kind = 0                            !< Of generalised_alpha.
+      real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = NEVER
+      logical :: controlled = .false.                !< Steps are chosen from their error.
+      real(wp) :: step_tolerance = 0.0_wp            !< Of those steps [-].
+      real(wp) :: output_dt = 0.0_wp
+      real(wp), allocatable :: ends(:)               !< Given steps end here, after the start of the stage [s].
+      integer :: cuts = 10, max_iterations = 12, every = 1, fields = 0
+      real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp, created_energy = 0.01_wp
+      integer :: measure = BY_STAGE                  !< See convergence.
+      logical :: film = .true.                       !< No key says when fields are written.
+      logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
+   end type stage_t
+
+   ! Of what follows no stages are all.
+   type, extends(scene_item_t) :: initial_values_t
+      character(LENGTH) :: group_name = 'all'
+      real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
+      logical :: with_table = .false.                !< Pressures are those of water at rest.
+      real(wp) :: water_table = 0.0_wp               !< [m]
+      real(wp) :: largest_suction = NEVER            !< Above a water table [kPa].
+      real(wp) :: saturation = 0.0_wp, v_z = 0.0_wp, wave = 0.0_wp, wave_number = 0.0_wp
+      logical :: uniform = .false., geostatic = .false.
+      logical :: follows = .false.      !< Columns end at the top of the ground above a point, not at `surface`.
+      real(wp) :: sigma(3) = 0.0_wp, surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp
+      logical :: net = .true.           !< K_0 acts on the net stress where p_c > 0.
+   end type initial_values_t
+
+   type, extends(scene_item_t) :: fix_values_t
+      character(LENGTH) :: group_name = ''
+      integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
+      real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp, from = -NEVER, until = NEVER
+      logical :: hold = .false., acceleration = .false.
+      logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
+      logical :: turns = .false.                     !< Of a plate its rotation, the value an angle.
+      character(LENGTH), allocatable :: stages(:)
+   end type fix_values_t
+
+   type, extends(scene_item_t) :: load_values_t
+      character(LENGTH) :: group_name = ''
+      integer :: kind = 0                            !< LOAD_...
+      real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
+      logical :: turns = .false.                     !< A moment on a plate.
+      character(LENGTH), allocatable :: stages(:)
+   end type load_values_t
+
+   !> A rigid plate: one with a face of its own that presses through a contact, or one that is joined to a boundary of
+   !> the mesh. It moves vertically, or in its plane: along r and z, and turning.
+   type, extends(scene_item_t) :: plate_values_t
+      character(NAME_LENGTH) :: name = ''
+      real(wp), allocatable :: corners(:, :)         !< (2, corners) of its own face, body on the left [m].
+      real(wp) :: mass = 0.0_wp, force = 0.0_wp
+      logical :: heavy = .false.
+      ! In the plane:
+      logical :: turns = .false.
+      real(wp) :: center(2) = 0.0_wp, inertia = 0.0_wp, force_r = 0.0_wp, moment = 0.0_wp
+      real(wp) :: penalty = 1.0e9_wp                !< Traction of a unit of distance of what is joined to it [kN/m3].
+   end type plate_values_t
+
+   !> Two boundaries, or a boundary and a plate, that may come into contact.
+   type, extends(scene_item_t) :: contact_values_t
+      character(NAME_LENGTH) :: name = ''
+      type(contact_options_t) :: options
+      character(LENGTH), allocatable :: stages(:)
+   end type contact_values_t
+
+   type :: named_point_t
+      character(NAME_LENGTH) :: name = ''
+      real(wp) :: x(2) = 0.0_wp
+   end type named_point_t
+contains
+   !> "FILE:LINE: " of a group of the scene.
+   pure function place_of(item) result(place)
+      class(scene_item_t), intent(in) :: item
+      character(:), allocatable :: place
+
+      place = at_line(item%file, item%line)
+   end function place_of
+
+   !> Factor of an amplitude at a time: straight lines or arcs between its pairs, constant outside. [-]
+   pure real(wp) function amplitude_at(amplitude, time) result(factor)
+      type(amplitude_t), intent(in) :: amplitude
+      real(wp), intent(in) :: time   !< [s]
+      real(wp) :: share
+      integer :: low, high, i
+
+      associate (t => amplitude%times, v => amplitude%values)
+         high = size(t)
+         factor = v(1)
+         if (time <= t(1)) return
+         factor = v(high)
+         if (time > t(high)) return
+         ! By halves: an earthquake has thousands of pairs.
+         low = 1
+         do while (high - low > 1)
+            i = (low + high)/2
+            if (time > t(i)) then
+               low = i
+            else
+               high = i
+            end if
+         end do
+         share = (time - t(low))/(t(high) - t(low))
+         if (size(amplitude%arcs) > 0) share = arc_at(amplitude%arcs(low), share)
+         factor = v(low) + (v(high) - v(low))*share
+      end associate
+   end function amplitude_at
+
+   !> Whether something limited to stages takes part in one; an empty list means every stage.
+   pure logical function acts_in(stages, name)
+      character(*), intent(in) :: stages(:), name   !< Names of stages. (stages named) or (0).
+
+      acts_in = size(stages) == 0 .or. any(stages == name)
+   end function acts_in
+end module scene_parts
