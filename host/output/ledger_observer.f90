@@ -4,9 +4,9 @@
 !> section 9.
 module ledger_observer
    use archive, only: archive_t
-   use contact_interfaces, only: mean_contact_forces
    use csv, only: csv_t, check_csv, write_row, hand_over, close_csv, is_open
    use effect_indicators, only: indicators_of, indicator_columns
+   use degrees_of_freedom, only: dofs_t
    use energy_ledger, only: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, &
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
@@ -108,8 +108,8 @@ contains
          end if
          t0 = clock()
          allocate (contact_force(0))
-         if (allocated(run%system%contacts%interfaces)) then
-            contact_force = mean_contact_forces(run%system%contacts, model%dofs, run%state%x, run%next%x)
+         if (allocated(run%system%contacts)) then
+            contact_force = mean_contact_forces(run, model%dofs)
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
          if (allocated(run%constraint%springs)) call mean_forces_of_springs(run%constraint%springs, model%dofs, &
@@ -128,6 +128,20 @@ contains
                     ' %. Its results may be wrong by any factor: '//REMEDY//'; created_energy of &stage allows more.')
       end associate
    end subroutine step
+
+   !> Mean of the forces of the contacts at the ends of a step, to be added to the internal ones; zero where the
+   !> displacements are refused [kN]. (unknowns)
+   function mean_contact_forces(run, dofs) result(force)
+      type(run_t), intent(inout) :: run   !< The contacts are probed.
+      type(dofs_t), intent(in) :: dofs
+      real(wp) :: force(dofs%n)
+      real(wp), allocatable :: before(:), after(:)
+
+      force = 0.0_wp
+      if (.not. run%system%contacts%forces(dofs, run%state%x, before)) return
+      if (.not. run%system%contacts%forces(dofs, run%next%x, after)) return
+      force = 0.5_wp*(before + after)
+   end function mean_contact_forces
 
    !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
    !> written.
