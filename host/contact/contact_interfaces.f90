@@ -559,7 +559,7 @@ contains
    !> Exchanges with an archive the tractions of friction, which contacts carry from step to step.
    subroutine exchange_friction(self, archive)
       class(contacts_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       integer :: i
 
       do i = 1, size(self%interfaces)

@@ -369,7 +369,7 @@ contains
    subroutine exchange_state(domain, state, archive)
       type(domain_t), intent(in) :: domain
       type(state_t), intent(inout) :: state
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       real(wp), allocatable :: table(:, :)
       integer :: variables(size(domain%regions)), i, rows
 

@@ -213,7 +213,7 @@ contains
    subroutine exchange(self, solution, archive)
       class(term_t), intent(inout) :: self
       type(solution_t), intent(inout) :: solution
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       associate (u1 => self, u2 => solution, u3 => archive)
       end associate

@@ -389,7 +389,7 @@ contains
    !> Exchanges a ledger with an archive.
    subroutine exchange_ledger(ledger, archive)
       type(ledger_t), intent(inout) :: ledger
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('ledger')
       call archive%exchange('kinetic', ledger%kinetic, 'kJ', 'kinetic energy')

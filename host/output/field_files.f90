@@ -61,7 +61,7 @@ contains
    !> Exchanges the times of the fields that are written.
    subroutine exchange(self, archive)
       class(field_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange_allocatable('frames', self%times, 's', 'times of the fields written so far')
       if (.not. allocated(self%times)) call archive%refuse()

@@ -55,7 +55,7 @@ contains
    !> Exchanges ledger, stress of the damping and the length of the table.
    subroutine exchange(self, archive)
       class(ledger_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call exchange_ledger(self%ledger, archive)
       call archive%exchange_allocatable('damping_stress', self%damping_stress, 'kPa', &

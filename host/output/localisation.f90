@@ -42,7 +42,7 @@ contains
    !> Exchanges what is booked; a run that is taken up tells it again.
    subroutine exchange(self, archive)
       class(localisation_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('localisation')
       call archive%exchange('shear', self%shear, 'kJ', 'shear work')

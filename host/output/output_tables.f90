@@ -40,7 +40,7 @@ contains
    !> Exchanges the lengths of the tables.
    subroutine exchange(self, archive)
       class(table_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call exchange_table('histories', self%history, archive)
       call exchange_table('contact', self%contact, archive)

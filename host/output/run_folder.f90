@@ -26,7 +26,7 @@ contains
    !> Exchanges the fingerprint of the scene that began the run.
    subroutine exchange(self, archive)
       class(folder_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange('origin', self%origin)
    end subroutine exchange

@@ -45,7 +45,7 @@ contains
    !> Exchanges the largest values so far.
    subroutine exchange(self, archive)
       class(summary_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange_allocatable('peaks_value', self%peaks%value, 'm, kPa', &
                                         'largest unknowns of the named points so far')

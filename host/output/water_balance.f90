@@ -47,7 +47,7 @@ contains
    !> Exchanges the water of the stage so far.
    subroutine exchange(self, archive)
       class(water_alarm_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       associate (w => self%water)
          call archive%exchange('water_gained', w%gained, 'm3', 'water that the pores took up in the stage')

@@ -67,7 +67,7 @@ contains
    !> Exchanges with a checkpoint what the observer needs to go on after a restart.
    subroutine exchange(self, archive)
       class(observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       associate (unused => self, neither => archive)
       end associate
@@ -188,7 +188,7 @@ contains
    !> Exchanges with an archive what observers keep.
    subroutine exchange_all(self, archive)
       class(observers_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       integer :: i
 
       do i = 1, size(self%list)

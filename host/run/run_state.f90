@@ -30,7 +30,7 @@ contains
    subroutine exchange_run(model, run, archive)
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       integer :: i
 
       call exchange_stage_state(size(model%stages), run%at, archive)
@@ -47,7 +47,7 @@ contains
                                                            size(model%contacts))
       call exchange_control(run%control, archive)
       if (allocated(run%system%contacts)) call exchange_pairs(model%dofs%n, run%system%extra, archive)
-      if (.not. archive%reading .or. .not. archive%is_intact()) return
+      if (.not. archive%reading .or. .not. archive%good) return
       run%state%gravity = gravity_at(model, run%state%time)
       call copy_state(run%state, run%next)
       if (.not. allocated(run%system%extra)) return
@@ -60,7 +60,7 @@ contains
    subroutine exchange_pairs(unknowns, extra, archive)
       integer, intent(in) :: unknowns
       integer, allocatable, intent(inout) :: extra(:, :)   !< (2, pairs)
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       integer, allocatable :: pairs(:)
 
       if (allocated(extra)) pairs = reshape(extra, [size(extra)])
@@ -77,7 +77,7 @@ contains
    subroutine exchange_stage_state(stages, at, archive)
       integer, intent(in) :: stages
       type(stage_state_t), intent(inout) :: at
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('stage')
       call archive%exchange('number', at%stage, '-', 'number of the stage', least=1, most=stages)

@@ -443,7 +443,7 @@ contains
    subroutine exchange(self, solution, archive)
       class(absorbing_t), intent(inout) :: self
       type(solution_t), intent(inout) :: solution
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       associate (unused => self)
       end associate

@@ -102,7 +102,7 @@ contains
    subroutine exchange(self, solution, archive)
       class(friction_t), intent(inout) :: self
       type(solution_t), intent(inout) :: solution
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       associate (unused => self)
       end associate

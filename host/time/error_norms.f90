@@ -45,7 +45,7 @@ contains
    !> Exchanges a memory, made by new_memory, with an archive.
    subroutine exchange_memory(memory, archive)
       type(rate_memory_t), intent(inout) :: memory
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange('rates_known', memory%known, &
                             'rates of the step before are known, with nothing sudden since')
