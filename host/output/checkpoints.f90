@@ -39,8 +39,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, nor => run, never => fault)
-      end associate
       self%last = clock()
    end subroutine begins
 

@@ -41,8 +41,6 @@ contains
       type(run_t), intent(inout) :: run
       integer, intent(in) :: number
 
-      associate (unused => self)
-      end associate
       if (size(model%contacts) == 0) return
       select type (contacts => run%system%contacts)
       type is (contacts_t)
@@ -103,8 +101,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (unused => done, never => fault)
-      end associate
       if (size(model%contacts) == 0) return
       if (.not. allocated(self%told)) allocate (self%told(size(model%contacts)), source=.false.)
       select type (contacts => run%system%contacts)

@@ -91,8 +91,6 @@ contains
       real(wp) :: now, before
       logical :: due
 
-      associate (unused => earlier)
-      end associate
       if (done%last) return
       due = .false.
       now = run%state%time - run%at%t_start
@@ -124,8 +122,6 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => complete)
-      end associate
       call write_frame(self%folder, model%domain, run%state, self%times, fault)
    end subroutine stage_ends
 

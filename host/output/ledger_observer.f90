@@ -70,8 +70,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run)
-      end associate
       if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
    end subroutine fits
 
@@ -153,8 +151,6 @@ contains
       type(slot_t), intent(inout) :: earlier(:)
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => earlier)
-      end associate
       self%ledger%dissipated = self%ledger%dissipated + run%dissipated
       if (is_open(self%table)) call write_ledger(self%table, run%state%time, done, self%indicators, self%ledger, fault)
    end subroutine taken_over
@@ -186,8 +182,6 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => complete, never => fault)
-      end associate
       associate (stage => model%stages(run%at%stage), ledger => self%ledger)
          if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
          if (.not. has_inertia(stage%kind) .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
@@ -204,8 +198,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run)
-      end associate
       call close_csv(self%table, fault)
    end subroutine ends
 

@@ -88,8 +88,6 @@ contains
       type(slot_t), intent(inout) :: earlier(:)
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => earlier)
-      end associate
       if (is_open(self%contact)) then
          write (self%contact%row, NUMBERS) contact_row(model, run%system%contacts, done%scheme%dt, run%state, &
                                                        done%contact_work)
@@ -114,8 +112,6 @@ contains
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: name
 
-      associate (unused => complete)
-      end associate
       call close_csv(self%reactions, fault)
       self%reactions%bytes = 0
       name = trim(model%stages(run%at%stage)%name)
@@ -130,8 +126,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run)
-      end associate
       call close_csv(self%history, fault)
       call close_csv(self%contact, fault)
       call close_csv(self%reactions, fault)

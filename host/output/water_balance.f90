@@ -67,8 +67,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: e
 
-      associate (never => fault)
-      end associate
       if (.not. done%scheme%has_rates .or. .not. model%domain%with_w) return
       call book_boundaries(model%dofs, done%scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            self%water)

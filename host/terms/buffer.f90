@@ -42,8 +42,6 @@ contains
       class(buffer_t), intent(in) :: self
       character(:), allocatable :: name_of_group
 
-      associate (unused => self)
-      end associate
       name_of_group = NAME
    end function group
 
@@ -108,8 +106,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: pairs(2, size(self%all)), i
 
-      associate (unused => fault)
-      end associate
       do i = 1, size(self%all)
          associate (spring => self%all(i)%spring)
             spring%upper = model%dofs%of(AT_U_Z, model%plates(self%plates(1, i))%node)
@@ -129,8 +125,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (u1 => begins, u2 => fault)
-      end associate
       do i = 1, size(self%all)
          solution%constraint%springs(i)%acts = acts_in(self%all(i)%stages, model%stages(solution%at%stage)%name)
       end do

@@ -108,8 +108,6 @@ contains
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => dt)
-      end associate
       select type (contacts => solution%system%contacts)
       type is (contacts_t)
          if (contacts%start_points(solution%state%x)) then

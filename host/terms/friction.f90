@@ -55,8 +55,6 @@ contains
       type(key_table_t) :: table
       integer :: c
 
-      associate (u1 => self, u2 => fault)
-      end associate
       there = .false.
       allocate (groups, source=groups_named(scene, IN_GROUP))
       do c = 1, size(model%contacts)
@@ -74,8 +72,6 @@ contains
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
 
-      associate (u1 => self, u2 => model, u3 => dt)
-      end associate
       select type (contacts => solution%system%contacts)
       type is (contacts_t)
          if (.not. contacts%begin_friction(solution%state%x)) &
@@ -90,8 +86,6 @@ contains
       real(wp), intent(inout) :: dissipated
       real(wp) :: by_sliding
 
-      associate (unused => self)
-      end associate
       select type (contacts => solution%system%contacts)
       type is (contacts_t)
          call contacts%accept_friction(solution%next%x, by_sliding)
@@ -104,8 +98,6 @@ contains
       type(solution_t), intent(inout) :: solution
       class(archive_t), intent(inout) :: archive
 
-      associate (unused => self)
-      end associate
       select type (contacts => solution%system%contacts)
       type is (contacts_t)
          call contacts%exchange_friction(archive)
