@@ -161,9 +161,7 @@ contains
          water%received = water%received + scheme%dt*inflow
          water%moved = water%moved + scheme%dt*(abs(inflow) + abs(outflow))
       end do
-      associate (before => old%s_rate(size(old%s) + 1:), after => new%s_rate(size(new%s) + 1:))
-         mean = before + scheme%gamma_1*(after - before)
-      end associate
+      mean = old%outflow + scheme%gamma_1*(new%outflow - old%outflow)
       water%left = water%left + scheme%dt*(mean(1) - mean(2))
       if (allocated(constraint%linear)) water%received = water%received &
          - water_through_dashpots(constraint%linear, dofs, constraint%air, new%x - old%x)

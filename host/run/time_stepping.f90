@@ -157,5 +157,6 @@ contains
       run%state%v = 0.0_wp
       run%state%a = 0.0_wp
       run%state%s_rate = 0.0_wp
+      run%state%outflow = 0.0_wp
    end subroutine zero_displacements
 end module time_stepping
