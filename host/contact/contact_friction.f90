@@ -9,7 +9,7 @@ module contact_friction
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: friction_t, traction_t, has_friction, pair_slips, drag_response, traction_at
+   public :: friction_t, traction_t, pair_slips, drag_response, traction_at
    public :: tangential_stiffness, touching_share
 
    real(wp), parameter :: TANGENTIAL_SHARE = 0.1_wp   !< Share of the penalty, where nothing else is given [-].
@@ -31,13 +31,6 @@ module contact_friction
       logical :: turns = .false.     !< Held from turning at once from one way to the other.
    end type traction_t
 contains
-   !> Whether a contact has friction.
-   pure logical function has_friction(options)
-      type(contact_options_t), intent(in) :: options
-
-      has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
-   end function has_friction
-
    !> eps_T, by default a tenth of the penalty of the pressure [kN/m3]. docs/theory/contact.md section 9.
    pure real(wp) function tangential_stiffness(options) result(stiffness)
       type(contact_options_t), intent(in) :: options

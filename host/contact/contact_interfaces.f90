@@ -1,28 +1,26 @@
 ! SPDX-License-Identifier: MIT
-!> Contacts in the equations: current coordinates go to the kernels, their forces and slopes to the unknowns. Without
-!> contacts nothing is allocated and nothing is done.
+!> Contacts in the equations: current coordinates go to the kernels, their forces and slopes to the unknowns.
 module contact_interfaces
    use archive, only: archive_t
    use texts, only: whole
    use kinds, only: wp
-   use contact_friction, only: friction_t, has_friction
+   use contact_friction, only: friction_t
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
                               contact_evaluate, points_of, slid_work
    use contact_plate, only: plate_motion_t, plate_response_t, new_plate_response, plate_displacements, &
                             plate_positions, plate_slopes, gather_on_plate, force_on_plate
    use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
-   use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK
+   use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, &
+                            CONTACT_OK
    use degrees_of_freedom, only: dofs_t, unknowns_of_body
    use unknown_fields, only: AT_U_Z, DISPLACEMENTS
-   use sparsity_pattern, only: pattern_t, make_pattern, place_of
+   use sparsity_pattern, only: pattern_t, place_of
+   use surface_forces, only: surface_forces_t
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, shortest_edge, plate_link_t, new_interface, &
-             tie_to_plate, plate_surface
-   public :: begin_friction, follow_turns, contacts_turn, accept_friction, tangential_traction
-   public :: evaluate_contacts, probe_contacts, start_points, probe_interface, fit_pattern, add_contacts, &
-             contact_forces, mean_contact_forces, rounding_of_ties, stretch_ties, exchange_contacts
+             tie_to_plate, plate_surface, tangential_traction, probe_interface
 
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of a displacement: of the node, and of its place by three
                                                !< unknowns.
@@ -65,14 +63,15 @@ module contact_interfaces
       integer :: active = 0
       integer :: sliding = 0                !< Nodes whose friction is at its limit.
       real(wp) :: drag = 0.0_wp             !< Friction on the master along the slave's tangent, summed up [kN].
-      real(wp) :: rounding = 0.0_wp         !< Rounding of the forces of its springs [kN].
       integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
    end type contact_interface_t
 
-   type :: contacts_t
-      type(contact_interface_t), allocatable :: interfaces(:)
-      integer, allocatable :: extra(:, :)   !< (2, pairs) unknowns that contacts have brought together so far.
+   type, extends(surface_forces_t) :: contacts_t
+      type(contact_interface_t), allocatable :: interfaces(:)   !< Contacts of the model, then what is tied to plates.
       type(contact_status_t) :: status      !< Status of the first interface that failed.
+   contains
+      procedure :: act, evaluate, missing, add, follow_turns, message, forces, find_closed, stretch
+      procedure :: probe, start_points, begin_friction, accept_friction, exchange_friction
    end type contacts_t
 contains
    !> Surface of the edges of a boundary.
@@ -194,17 +193,25 @@ contains
       end if
    end function motion_of
 
-   !> Everything at given displacements; false if a kernel refuses them. contacts%status then says why.
-   !> docs/theory/contact.md sections 2 to 4.
-   logical function evaluate_contacts(contacts, x, with_tangent) result(good)
-      type(contacts_t), intent(inout) :: contacts
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) At the level l_f; displacements first [m].
-      logical, intent(in) :: with_tangent   !< Slopes too.
+   subroutine act(self, acts)
+      class(contacts_t), intent(inout) :: self
+      logical, intent(in) :: acts(:)
+
+      self%interfaces(:size(acts))%acts = acts
+   end subroutine act
+
+   !> Everything at given displacements; false if a kernel refuses them. docs/theory/contact.md sections 2 to 4.
+   logical function evaluate(self, x, with_slopes) result(good)
+      class(contacts_t), intent(inout) :: self
+      real(wp), intent(in) :: x(:, :)
+      logical, intent(in) :: with_slopes
+      real(wp) :: rounding(size(self%interfaces))   !< Rounding of the forces of springs [kN].
       integer :: i
 
       good = .true.
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      rounding = 0.0_wp
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             t%active = 0
             t%thrust = 0.0_wp
             t%energy = 0.0_wp
@@ -212,40 +219,52 @@ contains
             t%sliding = 0
             t%drag = 0.0_wp
             if (.not. t%acts) cycle
-            call probe_one(t, x, with_tangent, t%result, contacts%status)
-            good = contacts%status%code == CONTACT_OK
+            call probe_one(t, x, with_slopes, t%result, self%status)
+            good = self%status%code == CONTACT_OK
             if (.not. good) return
             if (t%plate%node > 0) call gather_on_plate(t%geometry, t%result, t%plate%motion, t%master%x0, &
                                                        motion_of(t%plate, x), t%on_plate)
             t%active = count(t%result%active)
             t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
             t%energy = t%result%energy
-            if (allocated(t%spring)) t%rounding = ROUNDINGS*epsilon(1.0_wp)*norm2(spread(t%spring, 1, DISPLACEMENTS) &
+            if (allocated(t%spring)) rounding(i) = ROUNDINGS*epsilon(1.0_wp)*norm2(spread(t%spring, 1, DISPLACEMENTS) &
                                                                               *x(:DISPLACEMENTS, t%slave%node))
             t%area = sum(t%result%weight, mask=t%result%active)
             t%sliding = count(t%result%side /= 0)
             t%drag = dot_product(t%result%weight, t%result%traction)
          end associate
       end do
-   end function evaluate_contacts
+      self%active = sum(self%interfaces%active)
+      self%turns = any([(self%interfaces(i)%acts .and. self%interfaces(i)%result%turns, i=1, size(self%interfaces))])
+      self%rounding = norm2(rounding)
+   end function evaluate
+
+   function message(self) result(text)
+      class(contacts_t), intent(in) :: self
+      character(:), allocatable :: text
+      character(400) :: words
+
+      call contact_message(self%status, words)
+      text = trim(words)
+   end function message
 
    !> Evaluates the contacts without slopes, into `probe` of every interface that acts: the outcome of the last
    !> evaluation within a step stays.
-   logical function probe_contacts(contacts, x) result(good)
-      type(contacts_t), intent(inout) :: contacts
+   logical function probe(self, x) result(good)
+      class(contacts_t), intent(inout) :: self
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       integer :: i
 
       good = .true.
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
-            call probe_one(t, x, .false., t%probe, contacts%status)
-            good = contacts%status%code == CONTACT_OK
+            call probe_one(t, x, .false., t%probe, self%status)
+            good = self%status%code == CONTACT_OK
             if (.not. good) return
          end associate
       end do
-   end function probe_contacts
+   end function probe
 
    !> One of them, with the friction that its step starts from. status: as of contact_evaluate.
    subroutine probe_one(t, x, with_tangent, result, status)
@@ -283,15 +302,14 @@ contains
 
    !> Sets the displacements and gaps that the friction of a step starts from; false if a kernel refuses them.
    !> docs/theory/contact.md section 9.
-   logical function begin_friction(contacts, x) result(good)
-      type(contacts_t), intent(inout) :: contacts
+   logical function begin_friction(self, x) result(good)
+      class(contacts_t), intent(inout) :: self
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       integer :: i
 
       good = .true.
-      if (.not. allocated(contacts%interfaces)) return
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (.not. t%rubs) cycle
             ! Where it does not act nothing is held.
             if (.not. t%acts) t%friction%traction = 0.0_wp
@@ -299,56 +317,41 @@ contains
             t%slave_u = x(:DISPLACEMENTS, t%slave%node)
             t%master_u = displacements_of_master(t, x)
             t%friction%gap = 0.0_wp
-            call probe_one(t, x, .false., t%probe, contacts%status)
-            good = contacts%status%code == CONTACT_OK
+            call probe_one(t, x, .false., t%probe, self%status)
+            good = self%status%code == CONTACT_OK
             if (.not. good) return
             t%friction%gap = t%probe%gap
          end associate
       end do
    end function begin_friction
 
-   !> Notes before a correction which way the nodes slide now, so that none turns with it from one way to the other. At
-   !> the start and the end of a step (`fresh`) no node has a way. docs/theory/contact.md section 9.
-   subroutine follow_turns(contacts, fresh)
-      type(contacts_t), intent(inout) :: contacts
+   subroutine follow_turns(self, fresh)
+      class(contacts_t), intent(inout) :: self
       logical, intent(in) :: fresh
       integer :: i
 
-      if (.not. allocated(contacts%interfaces)) return
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (t%rubs) t%friction%side = merge(0, t%result%side, fresh)
          end associate
       end do
    end subroutine follow_turns
 
-   !> Whether a node was held at the last evaluation, because it turned from sliding one way to sliding the other.
-   pure logical function contacts_turn(contacts) result(turns)
-      type(contacts_t), intent(in) :: contacts
-      integer :: i
-
-      turns = .false.
-      if (.not. allocated(contacts%interfaces)) return
-      turns = any([(contacts%interfaces(i)%acts .and. contacts%interfaces(i)%result%turns, &
-                    i=1, size(contacts%interfaces))])
-   end function contacts_turn
-
    !> Takes the tractions at the end of an accepted step; what sliding has dissipated in it [kJ].
    !> docs/theory/contact.md section 9.
-   subroutine accept_friction(contacts, x, dissipated)
-      type(contacts_t), intent(inout) :: contacts
+   subroutine accept_friction(self, x, dissipated)
+      class(contacts_t), intent(inout) :: self
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) At the end of the step, displacements first [m].
       real(wp), intent(out) :: dissipated
       integer :: i
 
       dissipated = 0.0_wp
-      if (.not. allocated(contacts%interfaces)) return
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (.not. t%rubs .or. .not. t%acts) cycle
-            call probe_one(t, x, .false., t%probe, contacts%status)
+            call probe_one(t, x, .false., t%probe, self%status)
             ! What a step has ended with, no kernel refuses.
-            if (contacts%status%code /= CONTACT_OK) cycle
+            if (self%status%code /= CONTACT_OK) cycle
             dissipated = dissipated + slid_work(t%geometry%options, t%friction, t%probe)
             t%friction%traction = t%probe%traction
          end associate
@@ -366,15 +369,15 @@ contains
 
    !> Sets the states of the contact points at the displacements at the start of a step; false if a kernel refuses them.
    !> docs/theory/contact.md section 5. A step that is cut, and a restart, find the same states.
-   logical function start_points(contacts, x) result(good)
-      type(contacts_t), intent(inout) :: contacts
+   logical function start_points(self, x) result(good)
+      class(contacts_t), intent(inout) :: self
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       integer :: i
 
-      good = probe_contacts(contacts, x)
+      good = self%probe(x)
       if (.not. good) return
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (t%acts) t%point = points_of(t%probe)
          end associate
       end do
@@ -402,19 +405,16 @@ contains
                             status, friction)
    end subroutine probe_interface
 
-   !> Makes the pattern hold the slopes of the last evaluation. It grows only: a contact that opens leaves it alone.
-   subroutine fit_pattern(contacts, dofs, pattern, changed)
-      type(contacts_t), intent(inout) :: contacts
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(inout) :: pattern
-      logical, intent(out) :: changed   !< Whether the pattern has grown.
-      integer, allocatable :: missing(:, :)
+   function missing(self, pattern) result(pairs)
+      class(contacts_t), intent(in) :: self
+      type(pattern_t), intent(in) :: pattern
+      integer, allocatable :: pairs(:, :)
       integer :: n, i
 
-      allocate (missing(2, sum([(room(contacts%interfaces(i)), i=1, size(contacts%interfaces))])))
+      allocate (pairs(2, sum([(room(self%interfaces(i)), i=1, size(self%interfaces))])))
       n = 0
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
             if (t%plate%node > 0) then
                call list(t%on_plate%row(:t%on_plate%triplets), t%on_plate%column(:t%on_plate%triplets))
@@ -423,12 +423,7 @@ contains
             end if
          end associate
       end do
-      changed = n > 0
-      if (.not. changed) return
-      if (.not. allocated(contacts%extra)) allocate (contacts%extra(2, 0))
-      contacts%extra = reshape([contacts%extra, missing(:, :n), missing(2:1:-1, :n)], &
-                               [2, size(contacts%extra, 2) + 2*n])
-      call make_pattern(dofs%n, dofs%element, contacts%extra, pattern)
+      pairs = pairs(:, :n)
    contains
       pure integer function room(t)
          type(contact_interface_t), intent(in) :: t
@@ -440,41 +435,40 @@ contains
          integer, intent(in) :: row(:), column(:)
          integer :: k
 
-         associate (u => contacts%interfaces(i)%unknown)
+         associate (u => self%interfaces(i)%unknown)
             do k = 1, size(row)
                if (u(row(k)) == 0 .or. u(column(k)) == 0) cycle
                if (place_of(pattern, u(row(k)), u(column(k))) > 0) cycle
                n = n + 1
-               missing(:, n) = [u(row(k)), u(column(k))]
+               pairs(:, n) = [u(row(k)), u(column(k))]
             end do
          end associate
       end subroutine list
-   end subroutine fit_pattern
+   end function missing
 
-   !> Adds the last evaluation; `share` is the slope of the evaluated displacements against the new ones.
    !> docs/theory/contact.md section 3.
-   subroutine add_contacts(contacts, pattern, share, with_tangent, residual, scale, values)
-      type(contacts_t), intent(in) :: contacts
+   subroutine add(self, pattern, share, with_slopes, residual, scale, values)
+      class(contacts_t), intent(in) :: self
       type(pattern_t), intent(in) :: pattern
-      real(wp), intent(in) :: share   !< l_f [-]
-      logical, intent(in) :: with_tangent
-      real(wp), intent(inout) :: residual(:), scale(:), values(:)   !< (unknowns) [kN], twice; (entries).
+      real(wp), intent(in) :: share
+      logical, intent(in) :: with_slopes
+      real(wp), intent(inout) :: residual(:), scale(:), values(:)
       integer :: i
 
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
             if (t%plate%node > 0) then
-               call add(t%unknown, t%on_plate%force, t%on_plate%size, t%on_plate%row(:t%on_plate%triplets), &
-                        t%on_plate%column, t%on_plate%value)
+               call add_one(t%unknown, t%on_plate%force, t%on_plate%size, t%on_plate%row(:t%on_plate%triplets), &
+                            t%on_plate%column, t%on_plate%value)
             else
-               call add(t%unknown, t%result%force, abs(t%result%force), t%result%row(:t%result%triplets), &
-                        t%result%column, t%result%value)
+               call add_one(t%unknown, t%result%force, abs(t%result%force), t%result%row(:t%result%triplets), &
+                            t%result%column, t%result%value)
             end if
          end associate
       end do
    contains
-      subroutine add(u, force, sizes, row, column, value)
+      subroutine add_one(u, force, sizes, row, column, value)
          integer, intent(in) :: u(:), row(:), column(:)
          real(wp), intent(in) :: force(:), sizes(:), value(:)
          integer :: k, place
@@ -484,75 +478,60 @@ contains
             residual(u(k)) = residual(u(k)) + force(k)
             scale(u(k)) = scale(u(k)) + sizes(k)
          end do
-         if (.not. with_tangent) return
+         if (.not. with_slopes) return
          do k = 1, size(row)
             if (u(row(k)) == 0 .or. u(column(k)) == 0) cycle
             place = place_of(pattern, u(row(k)), u(column(k)))
             values(place) = values(place) + share*value(k)
          end do
-      end subroutine add
-   end subroutine add_contacts
+      end subroutine add_one
+   end subroutine add
 
-   !> Distances of tied nodes from their places on plates, which pull; 0 elsewhere [m]. (DISPLACEMENTS, nodes)
-   pure subroutine stretch_ties(contacts, x, stretched)
-      type(contacts_t), intent(in) :: contacts
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
+   subroutine stretch(self, x, stretched)
+      class(contacts_t), intent(in) :: self
+      real(wp), intent(in) :: x(:, :)
       real(wp), intent(out) :: stretched(:, :)
       integer :: i
 
       stretched = 0.0_wp
-      if (.not. allocated(contacts%interfaces)) return
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (allocated(t%spring)) stretched(:, t%slave%node) = x(:DISPLACEMENTS, t%slave%node) &
                                                                   - displacements_of_master(t, x)
          end associate
       end do
-   end subroutine stretch_ties
+   end subroutine stretch
 
-   !> Rounding of the forces between boundaries and the plates that they are tied to: small differences of large
-   !> displacements, times stiff springs [kN].
-   pure real(wp) function rounding_of_ties(contacts) result(rounding)
-      type(contacts_t), intent(in) :: contacts
+   subroutine find_closed(self, x, closed)
+      class(contacts_t), intent(inout) :: self
+      real(wp), intent(in) :: x(:, :)
+      logical, intent(out) :: closed(:)
       integer :: i
 
-      rounding = 0.0_wp
-      if (allocated(contacts%interfaces)) &
-         rounding = norm2([(contacts%interfaces(i)%rounding, i=1, size(contacts%interfaces))])
-   end function rounding_of_ties
+      closed = .false.
+      if (.not. self%probe(x)) return
+      do i = 1, size(closed)
+         associate (t => self%interfaces(i))
+            if (t%acts) closed(i) = any(t%probe%active)
+         end associate
+      end do
+   end subroutine find_closed
 
-   !> Mean of the forces of the contacts at two sets of displacements, to be added to the internal ones; zero if a
-   !> kernel refuses them. The outcome of the last evaluation within the step stays.
-   function mean_contact_forces(contacts, dofs, x0, x1) result(force)
-      type(contacts_t), intent(inout) :: contacts
+   logical function forces(self, dofs, x, force) result(good)
+      class(contacts_t), intent(inout) :: self
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x0(:, :), x1(:, :)   !< (FIELDS, nodes) [m]
-      real(wp) :: force(dofs%n)                    !< Force on every unknown [kN].
-      real(wp), allocatable :: before(:), after(:)
-
-      force = 0.0_wp
-      if (.not. contact_forces(contacts, dofs, x0, before)) return
-      if (.not. contact_forces(contacts, dofs, x1, after)) return
-      force = 0.5_wp*(before + after)
-   end function mean_contact_forces
-
-   !> Forces of the contacts at given displacements, to be added to the internal ones; false if a kernel refuses them.
-   !> The outcome of the last evaluation within the step stays.
-   logical function contact_forces(contacts, dofs, x, force) result(good)
-      type(contacts_t), intent(inout) :: contacts
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
-      real(wp), allocatable, intent(out) :: force(:)   !< Force on every unknown [kN]. (unknowns)
+      real(wp), intent(in) :: x(:, :)
+      real(wp), allocatable, intent(out) :: force(:)
 
       allocate (force(dofs%n), source=0.0_wp)
-      good = probe_contacts(contacts, x)
+      good = self%probe(x)
       if (good) call gather_probes()
    contains
       subroutine gather_probes()
          integer :: c, n
 
-         do c = 1, size(contacts%interfaces)
-            associate (t => contacts%interfaces(c))
+         do c = 1, size(self%interfaces)
+            associate (t => self%interfaces(c))
                if (.not. t%acts) cycle
                if (t%plate%node > 0) then
                   n = 2*t%geometry%slave_nodes
@@ -575,32 +554,19 @@ contains
             if (u(k) > 0) force(u(k)) = force(u(k)) + f(k)
          end do
       end subroutine gather
-   end function contact_forces
+   end function forces
 
-   !> Exchanges with an archive what contacts carry from step to step: tractions of friction, and the pairs of unknowns
-   !> that they have brought together, on which the ordering of the matrix depends.
-   subroutine exchange_contacts(dofs, contacts, archive)
-      type(dofs_t), intent(in) :: dofs
-      type(contacts_t), intent(inout) :: contacts
-      type(archive_t), intent(inout) :: archive
-      integer, allocatable :: pairs(:)
+   !> Exchanges with an archive the tractions of friction, which contacts carry from step to step.
+   subroutine exchange_friction(self, archive)
+      class(contacts_t), intent(inout) :: self
+      class(archive_t), intent(inout) :: archive
       integer :: i
 
-      if (.not. allocated(contacts%interfaces)) return
-      do i = 1, size(contacts%interfaces)
-         associate (t => contacts%interfaces(i))
+      do i = 1, size(self%interfaces)
+         associate (t => self%interfaces(i))
             if (t%rubs) call archive%exchange('friction_'//whole(i), t%friction%traction, 'kPa', &
                                               'traction of every slave node of a contact with friction')
          end associate
       end do
-      if (allocated(contacts%extra)) pairs = reshape(contacts%extra, [size(contacts%extra)])
-      call archive%exchange_allocatable('pairs', pairs, '-', &
-                                        'pairs of unknowns that contacts brought into the matrix')
-      if (.not. archive%reading .or. .not. allocated(pairs)) return
-      if (any(pairs < 1 .or. pairs > dofs%n) .or. mod(size(pairs), 2) /= 0) then
-         call archive%refuse()
-      else
-         contacts%extra = reshape(pairs, [2, size(pairs)/2])
-      end if
-   end subroutine exchange_contacts
+   end subroutine exchange_friction
 end module contact_interfaces

@@ -6,7 +6,7 @@ module contact_types
    implicit none (type, external)
    private
    public :: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
-   public :: contact_options_t, contact_status_t, contact_fail, contact_message, is_finite
+   public :: contact_options_t, has_friction, contact_status_t, contact_fail, contact_message, is_finite
    public :: CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
              CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION
 
@@ -47,6 +47,13 @@ module contact_types
 
    integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
 contains
+   !> Whether a contact has friction.
+   pure logical function has_friction(options)
+      type(contact_options_t), intent(in) :: options
+
+      has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
+   end function has_friction
+
    !> A status with the place and the value that are wrong.
    pure function contact_fail(code, index, master, value) result(status)
       integer, intent(in) :: code

@@ -107,9 +107,10 @@ module porous_domain
       real(wp), allocatable :: state(:)       !< State variables, element by element, see before_state.
       real(wp), allocatable :: e(:)           !< void ratio
       real(wp), allocatable :: s(:)           !< degree of saturation
-      !> Rate of the degree of saturation (points) [1/s]; after it what flows out through prescribed pressures and
-      !> seepage faces, less the rain: both fluids, air [m3/s]. It follows the scheme as the storage of points does.
-      real(wp), allocatable :: s_rate(:)
+      real(wp), allocatable :: s_rate(:)      !< rate of the degree of saturation [1/s]
+      !> Flows out through prescribed pressures and seepage faces, less the rain: both fluids, air [m3/s]. They
+      !> follow the scheme as the storage of points does.
+      real(wp) :: outflow(OUTFLOWS) = 0.0_wp
       ! Where parts of the ground join or leave, else not allocated. docs/theory/host.md section 14.
       logical, allocatable :: present(:)      !< Parts of the ground in this stage. (elements)
       logical, allocatable :: joins(:)        !< Parts that join with this stage. (elements)
@@ -252,7 +253,7 @@ contains
       allocate (state%state(domain%before_state(size(domain%before_state))), source=0.0_wp)
       allocate (state%e(points), source=0.0_wp)
       allocate (state%s(points), source=1.0_wp)
-      allocate (state%s_rate(points + OUTFLOWS), source=0.0_wp)
+      allocate (state%s_rate(points), source=0.0_wp)
       do e = 1, size(domain%mesh%t6, 2)
          state%e((e - 1)*domain%rule + 1:e*domain%rule) = domain%regions(domain%region_of(e))%void_ratio
       end do
@@ -353,6 +354,7 @@ contains
       to%time = from%time
       to%gravity = from%gravity
       to%growth = from%growth
+      to%outflow = from%outflow
       if (allocated(from%present)) then
          to%present = from%present
          to%joins = from%joins
@@ -369,7 +371,7 @@ contains
    subroutine exchange_state(domain, state, archive)
       type(domain_t), intent(in) :: domain
       type(state_t), intent(inout) :: state
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       real(wp), allocatable :: table(:, :)
       integer :: variables(size(domain%regions)), i, rows
 
@@ -389,6 +391,7 @@ contains
       state%state = reshape(table, [size(table)])
       call archive%exchange('e', state%e, '-', 'void ratio')
       call archive%exchange('s', state%s, '-', 'degree of saturation')
-      call archive%exchange('s_rate', state%s_rate, '1/s, m3/s', 'its rate; the flows out, of both fluids and of air')
+      call archive%exchange('s_rate', state%s_rate, '1/s', 'its rate')
+      call archive%exchange('outflow', state%outflow, 'm3/s', 'flows out of the ground: of both fluids, of air')
    end subroutine exchange_state
 end module porous_domain

@@ -1,11 +1,11 @@
 ! SPDX-License-Identifier: MIT
-!> Contacts of a model at the start of a run and of a stage: set up, seated, switched.
+!> Contacts of a model at the start of a run: set up, and seated.
 module contact_setup
    use acting_places, only: facing_edges
    use kinds, only: wp
    use boundary_loads, only: plate_loads
    use model_types, only: model_t, plate_t
-   use scene_parts, only: acts_in, stage_t
+   use surface_forces, only: surface_forces_t
    use unknown_fields, only: AT_U_Z
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
    use contact_interfaces, only: contacts_t, surface_t, plate_link_t, surface_of, new_interface, tie_to_plate, &
@@ -15,14 +15,15 @@ module contact_setup
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
-   public :: prepare_contacts, place_heavy_plates, contacts_act
+   public :: prepare_contacts, place_heavy_plates
 contains
    !> Prepares the contacts of a model; a fault names the contact and what is wrong with its surfaces. Fault EXIT_INPUT,
    !> where contact_prepare refuses them. Without contacts nothing is allocated.
    subroutine prepare_contacts(model, contacts, fault)
       type(model_t), intent(in) :: model
-      type(contacts_t), intent(out) :: contacts
+      class(surface_forces_t), allocatable, intent(out) :: contacts
       type(fault_t), intent(inout) :: fault
+      type(contacts_t), allocatable :: built
       type(contact_status_t) :: status
       type(surface_t) :: master
       character(400) :: text
@@ -31,7 +32,8 @@ contains
 
       at = size(model%contacts)
       if (at + count(is_tied(model%plates)) == 0) return
-      allocate (contacts%interfaces(at + count(is_tied(model%plates))))
+      allocate (built)
+      allocate (built%interfaces(at + count(is_tied(model%plates))))
       associate (mesh => model%domain%mesh)
          do i = 1, size(model%contacts)
             associate (one => model%contacts(i))
@@ -43,7 +45,7 @@ contains
                   master = surface_of(facing_edges(model, one%master, one%stages), mesh%x)
                end if
                call new_interface(model%dofs, surface_of(facing_edges(model, one%slave, one%stages), mesh%x), master, &
-                                  link, one%options, contacts%interfaces(i), status)
+                                  link, one%options, built%interfaces(i), status)
                if (status%code == CONTACT_OK) cycle
                call contact_message(status, text)
                call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//trim(text)//'.')
@@ -56,10 +58,11 @@ contains
                if (.not. is_tied(plate)) cycle
                at = at + 1
                call tie_to_plate(model%dofs, surface_of(mesh%groups(plate%group)%edges, mesh%x), link_of(plate), &
-                                 plate%penalty, contacts%interfaces(at))
+                                 plate%penalty, built%interfaces(at))
             end associate
          end do
       end associate
+      call move_alloc(built, contacts)
    end subroutine prepare_contacts
 
    !> Whether a boundary is tied to a plate by springs: where the plate turns.
@@ -78,14 +81,12 @@ contains
 
    !> A heavy plate starts where the penalty alone carries what acts on it downwards: so it is held from the first
    !> iteration on. docs/theory/contact.md section 4. Sets u_z of plates with a face of their own that looks down.
-   subroutine place_heavy_plates(model, contacts, state)
+   subroutine place_heavy_plates(model, state)
       type(model_t), intent(in) :: model
-      type(contacts_t), intent(in) :: contacts
       type(state_t), intent(inout) :: state
       real(wp) :: area, load, loads(3)
       integer :: i
 
-      if (.not. allocated(contacts%interfaces)) return
       do i = 1, size(model%contacts)
          if (model%contacts(i)%plate == 0) cycle
          associate (plate => model%plates(model%contacts(i)%plate))
@@ -113,17 +114,4 @@ contains
          end do
       end function area_below
    end subroutine place_heavy_plates
-
-   !> Which contacts take part in a stage.
-   subroutine contacts_act(model, stage, contacts)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(contacts_t), intent(inout) :: contacts
-      integer :: i
-
-      if (.not. allocated(contacts%interfaces)) return
-      do i = 1, size(model%contacts)
-         contacts%interfaces(i)%acts = acts_in(model%contacts(i)%stages, stage%name)
-      end do
-   end subroutine contacts_act
 end module contact_setup

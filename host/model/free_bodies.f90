@@ -3,7 +3,7 @@
 !> rigid motions that its supports leave. docs/theory/host.md section 7.1.
 module free_bodies
    use kinds, only: wp
-   use contact_friction, only: has_friction
+   use contact_types, only: has_friction
    use exit_codes, only: EXIT_FREE_BODY
    use faults, only: fault_t, raise
    use generalised_alpha, only: has_inertia

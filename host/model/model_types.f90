@@ -148,9 +148,6 @@ contains
       type(model_t), intent(in) :: model
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
-
-      associate (u1 => self, u2 => model, u3 => solution, u4 => fault)
-      end associate
    end subroutine begin_run
 
    !> The start of the stage solution%at%stage, from solution%state; also where a run is taken up within the stage.
@@ -160,9 +157,6 @@ contains
       logical, intent(in) :: begins   !< Else the run is in the middle of it.
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
-
-      associate (u1 => self, u2 => model, u3 => begins, u4 => solution, u5 => fault)
-      end associate
    end subroutine begin_stage
 
    !> Before an attempt at a step of length dt from solution%state to solution%next; of length 0 where a stage begins.
@@ -173,9 +167,6 @@ contains
       real(wp), intent(in) :: dt   !< [s]
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
-
-      associate (u1 => self, u2 => model, u3 => dt, u4 => solution, u5 => fault)
-      end associate
    end subroutine before_step
 
    !> Behind the supports of the scene: values at the end of the step that the term prescribes or limits.
@@ -184,9 +175,6 @@ contains
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time   !< At the end of the step [s].
       type(solution_t), intent(inout) :: solution
-
-      associate (u1 => self, u2 => model, u3 => time, u4 => solution)
-      end associate
    end subroutine prescribe
 
    !> After a step that Newton's method has solved: values of solution%next that follow from its unknowns.
@@ -194,9 +182,6 @@ contains
       class(term_t), intent(in) :: self
       type(model_t), intent(in) :: model
       type(solution_t), intent(inout) :: solution
-
-      associate (u1 => self, u2 => model, u3 => solution)
-      end associate
    end subroutine complete
 
    !> After an accepted step, booked and not yet taken over. Energies [kJ] of the step grow by what the term dissipated.
@@ -204,19 +189,13 @@ contains
       class(term_t), intent(inout) :: self
       type(solution_t), intent(inout) :: solution
       real(wp), intent(inout) :: dissipated   !< [kJ]
-
-      associate (u1 => self, u2 => solution, u3 => dissipated)
-      end associate
    end subroutine accept
 
    !> What the term keeps from step to step, and does not find again from the scene.
    subroutine exchange(self, solution, archive)
       class(term_t), intent(inout) :: self
       type(solution_t), intent(inout) :: solution
-      type(archive_t), intent(inout) :: archive
-
-      associate (u1 => self, u2 => solution, u3 => archive)
-      end associate
+      class(archive_t), intent(inout) :: archive
    end subroutine exchange
 
    !> What the term may have to do with a step that fails: the end of a sentence, or nothing.
@@ -226,8 +205,6 @@ contains
       real(wp), intent(in) :: time   !< At the end of the step [s].
       character(:), allocatable :: text
 
-      associate (u1 => self, u2 => model, u3 => time)
-      end associate
       text = ''
    end function remark
 end module model_types

@@ -2,7 +2,8 @@
 !> Observer that writes checkpoints, the complete state of a run in one file, and a run from one. Every part of a run
 !> and every observer exchanges what it keeps by itself.
 module checkpoints
-   use archive, only: archive_t, archive_kind_t, create_archive, open_archive, close_archive
+   use archive, only: archive_t
+   use archive_file, only: archive_file_t, archive_kind_t, create_archive, open_archive, close_archive
    use run_state, only: run_t, exchange_run
    use run_observer, only: observer_t, observers_t, slot_t, accepted_step_t
    use wall_clock, only: clock
@@ -16,7 +17,7 @@ module checkpoints
    public :: checkpoint_observer_t, read_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '18', &
+   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '19', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
@@ -38,8 +39,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, nor => run, never => fault)
-      end associate
       self%last = clock()
    end subroutine begins
 
@@ -78,7 +77,7 @@ contains
       type(run_t), intent(inout) :: run   !< Stays as it is; a restart would restore it.
       type(slot_t), intent(inout) :: observers(:)
       type(fault_t), intent(inout) :: fault
-      type(archive_t) :: archive
+      type(archive_file_t) :: archive
       logical :: good
       integer :: i
 
@@ -101,7 +100,7 @@ contains
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(archive_t) :: archive
+      type(archive_file_t) :: archive
       logical :: good
 
       call open_archive(path, KIND_OF_FILE, archive, fault)
@@ -118,7 +117,7 @@ contains
    subroutine exchange_scene(path, model, archive, fault)
       character(*), intent(in) :: path
       type(model_t), intent(in) :: model
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       type(fault_t), intent(inout) :: fault
       integer, allocatable :: theirs(:)
       character(len(model%origin%name)) :: scene
@@ -134,7 +133,7 @@ contains
       call archive%exchange_allocatable('groups', theirs, '-', &
                                         'two numbers for every group of the scene, to find the one that differs')
       if (fingerprint == model%origin%fingerprint) return
-      if (.not. archive%is_intact() .or. .not. allocated(theirs)) then
+      if (.not. archive%good .or. .not. allocated(theirs)) then
          call raise(fault, EXIT_RESTART, path//DAMAGED)
          return
       end if

@@ -4,7 +4,7 @@
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use contact_interfaces, only: probe_contacts, shortest_edge
+   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
    use generalised_alpha, only: has_inertia
    use faults, only: fault_t
    use model_types, only: model_t
@@ -40,19 +40,28 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       integer, intent(in) :: number
+
+      if (size(model%contacts) == 0) return
+      select type (contacts => run%system%contacts)
+      type is (contacts_t)
+         if (contacts%probe(run%state%x)) call warn_of_overlaps(model, contacts%interfaces, run%state%x, number)
+      end select
+   end subroutine stage_begins
+
+   subroutine warn_of_overlaps(model, interfaces, x, number)
+      type(model_t), intent(in) :: model
+      type(contact_interface_t), intent(in) :: interfaces(:)
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
+      integer, intent(in) :: number     !< Number of the stage.
       real(wp) :: depth
       integer :: i, at
 
-      associate (unused => self)
-      end associate
-      if (size(model%contacts) == 0) return
-      if (.not. probe_contacts(run%system%contacts, run%state%x)) return
       do i = 1, size(model%contacts)
-         if (.not. run%system%contacts%interfaces(i)%acts) cycle
+         if (.not. interfaces(i)%acts) cycle
          if (number > 1) then
             if (acts_in(model%contacts(i)%stages, model%stages(number - 1)%name)) cycle
          end if
-         associate (t => run%system%contacts%interfaces(i), one => model%contacts(i), x => run%state%x)
+         associate (t => interfaces(i), one => model%contacts(i))
             at = maxloc(t%probe%pressure, 1)
             depth = t%probe%pressure(at)/one%options%penalty
             if (depth <= ROUNDING_DEPTH*shortest_edge(t%slave)) cycle
@@ -80,7 +89,7 @@ contains
             'the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact '// &
             'alone holds.'
       end function advice
-   end subroutine stage_begins
+   end subroutine warn_of_overlaps
 
    !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
@@ -92,20 +101,21 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (unused => done, never => fault)
-      end associate
-      if (.not. allocated(run%system%contacts%interfaces)) return
-      if (.not. allocated(self%told)) allocate (self%told(size(run%system%contacts%interfaces)), source=.false.)
-      do i = 1, size(self%told)
-         associate (t => run%system%contacts%interfaces(i))
-            if (.not. t%acts .or. self%told(i) .or. t%result%unpressed <= ALARMING_DEPTH) cycle
-            self%told(i) = .true.
-            call print_warning('contact '//trim(model%contacts(i)%name)//', time '// &
-               short(run%next%time)//' s: near ('//short(t%result%unpressed_at(1))//', '// &
-               short(t%result%unpressed_at(2))//') m the surfaces have penetrated each other by '// &
-               short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
-               'gap = ''combined'' in &contact, or refine the slave there.')
-         end associate
-      end do
+      if (size(model%contacts) == 0) return
+      if (.not. allocated(self%told)) allocate (self%told(size(model%contacts)), source=.false.)
+      select type (contacts => run%system%contacts)
+      type is (contacts_t)
+         do i = 1, size(self%told)
+            associate (t => contacts%interfaces(i))
+               if (.not. t%acts .or. self%told(i) .or. t%result%unpressed <= ALARMING_DEPTH) cycle
+               self%told(i) = .true.
+               call print_warning('contact '//trim(model%contacts(i)%name)//', time '// &
+                  short(run%next%time)//' s: near ('//short(t%result%unpressed_at(1))//', '// &
+                  short(t%result%unpressed_at(2))//') m the surfaces have penetrated each other by '// &
+                  short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
+                  'gap = ''combined'' in &contact, or refine the slave there.')
+            end associate
+         end do
+      end select
    end subroutine step
 end module contact_alarm

@@ -8,6 +8,7 @@ module contact_rows
    use contact_types, only: contact_status_t, CONTACT_OK
    use model_types, only: model_t, plate_t
    use porous_domain, only: state_t
+   use surface_forces, only: surface_forces_t
    use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
    private
@@ -41,14 +42,20 @@ contains
    !> z: angle [-], [1/s], [1/s2], moment [kN m].
    function contact_row(model, contacts, dt, state, work) result(row)
       type(model_t), intent(in) :: model
-      type(contacts_t), intent(in) :: contacts
+      class(surface_forces_t), allocatable, intent(in) :: contacts
       real(wp), intent(in) :: dt, work   !< [s], [kJ]
       type(state_t), intent(in) :: state
       real(wp), allocatable :: row(:)
       integer :: i
 
-      row = [state%time, dt, work, (values(contacts%interfaces(i)), i=1, size(model%contacts)), &
-             (of_plate(model%plates(i)), i=1, size(model%plates))]
+      row = [state%time, dt, work]
+      if (allocated(contacts)) then
+         select type (contacts)
+         type is (contacts_t)
+            row = [row, (values(contacts%interfaces(i)), i=1, size(model%contacts))]
+         end select
+      end if
+      row = [row, (of_plate(model%plates(i)), i=1, size(model%plates))]
    contains
       pure function of_plate(plate) result(list)
          type(plate_t), intent(in) :: plate
@@ -83,18 +90,30 @@ contains
    !> friction. A state that a kernel refuses has none.
    subroutine contact_nodes(model, contacts, state, table)
       type(model_t), intent(in) :: model
-      type(contacts_t), intent(in) :: contacts
+      class(surface_forces_t), intent(in) :: contacts
       type(state_t), intent(in) :: state
       real(wp), allocatable, intent(out) :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
+
+      allocate (table(8, 0))
+      select type (contacts)
+      type is (contacts_t)
+         call list_nodes(contacts%interfaces(:size(model%contacts)), state, table)
+      end select
+   end subroutine contact_nodes
+
+   subroutine list_nodes(interfaces, state, table)
+      type(contact_interface_t), intent(in) :: interfaces(:)
+      type(state_t), intent(in) :: state
+      real(wp), allocatable, intent(inout) :: table(:, :)
       type(contact_workspace_t) :: work
       type(contact_result_t) :: found
       type(contact_status_t) :: status
       real(wp), allocatable :: rows(:, :)
       integer :: c, i
 
-      allocate (rows(8, 0), table(8, 0))
-      do c = 1, size(model%contacts)
-         associate (t => contacts%interfaces(c))
+      allocate (rows(8, 0))
+      do c = 1, size(interfaces)
+         associate (t => interfaces(c))
             if (.not. t%acts) cycle
             work = new_workspace(t%geometry)
             found = new_result(t%geometry)
@@ -107,5 +126,5 @@ contains
          end associate
       end do
       call move_alloc(rows, table)
-   end subroutine contact_nodes
+   end subroutine list_nodes
 end module contact_rows

@@ -95,8 +95,7 @@ contains
       ledger%gravity = ledger%gravity + work%gravity
       ledger%damping = ledger%damping + work%damping
       call book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
-      call book_outflow(dofs, scheme, constraint, reaction, old%s_rate(size(old%s) + 1:), &
-                        new%s_rate(size(new%s) + 1:), ledger)
+      call book_outflow(dofs, scheme, constraint, reaction, old%outflow, new%outflow, ledger)
       if (allocated(damping_stress)) call follow_damping(domain, scheme, old, new, damping_stress)
    end subroutine book_step
 
@@ -389,7 +388,7 @@ contains
    !> Exchanges a ledger with an archive.
    subroutine exchange_ledger(ledger, archive)
       type(ledger_t), intent(inout) :: ledger
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('ledger')
       call archive%exchange('kinetic', ledger%kinetic, 'kJ', 'kinetic energy')

@@ -61,7 +61,7 @@ contains
    !> Exchanges the times of the fields that are written.
    subroutine exchange(self, archive)
       class(field_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange_allocatable('frames', self%times, 's', 'times of the fields written so far')
       if (.not. allocated(self%times)) call archive%refuse()
@@ -91,8 +91,6 @@ contains
       real(wp) :: now, before
       logical :: due
 
-      associate (unused => earlier)
-      end associate
       if (done%last) return
       due = .false.
       now = run%state%time - run%at%t_start
@@ -124,8 +122,6 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => complete)
-      end associate
       call write_frame(self%folder, model%domain, run%state, self%times, fault)
    end subroutine stage_ends
 

@@ -4,9 +4,9 @@
 !> section 9.
 module ledger_observer
    use archive, only: archive_t
-   use contact_interfaces, only: mean_contact_forces
    use csv, only: csv_t, check_csv, write_row, hand_over, close_csv, is_open
    use effect_indicators, only: indicators_of, indicator_columns
+   use degrees_of_freedom, only: dofs_t
    use energy_ledger, only: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, &
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
@@ -55,7 +55,7 @@ contains
    !> Exchanges ledger, stress of the damping and the length of the table.
    subroutine exchange(self, archive)
       class(ledger_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call exchange_ledger(self%ledger, archive)
       call archive%exchange_allocatable('damping_stress', self%damping_stress, 'kPa', &
@@ -70,8 +70,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run)
-      end associate
       if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
    end subroutine fits
 
@@ -108,8 +106,8 @@ contains
          end if
          t0 = clock()
          allocate (contact_force(0))
-         if (allocated(run%system%contacts%interfaces)) then
-            contact_force = mean_contact_forces(run%system%contacts, model%dofs, run%state%x, run%next%x)
+         if (allocated(run%system%contacts)) then
+            contact_force = mean_contact_forces(run, model%dofs)
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
          if (allocated(run%constraint%springs)) call mean_forces_of_springs(run%constraint%springs, model%dofs, &
@@ -129,6 +127,20 @@ contains
       end associate
    end subroutine step
 
+   !> Mean of the forces of the contacts at the ends of a step, to be added to the internal ones; zero where the
+   !> displacements are refused [kN]. (unknowns)
+   function mean_contact_forces(run, dofs) result(force)
+      type(run_t), intent(inout) :: run   !< The contacts are probed.
+      type(dofs_t), intent(in) :: dofs
+      real(wp) :: force(dofs%n)
+      real(wp), allocatable :: before(:), after(:)
+
+      force = 0.0_wp
+      if (.not. run%system%contacts%forces(dofs, run%state%x, before)) return
+      if (.not. run%system%contacts%forces(dofs, run%next%x, after)) return
+      force = 0.5_wp*(before + after)
+   end function mean_contact_forces
+
    !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
    !> written.
    subroutine taken_over(self, model, run, done, earlier, fault)
@@ -139,8 +151,6 @@ contains
       type(slot_t), intent(inout) :: earlier(:)
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => earlier)
-      end associate
       self%ledger%dissipated = self%ledger%dissipated + run%dissipated
       if (is_open(self%table)) call write_ledger(self%table, run%state%time, done, self%indicators, self%ledger, fault)
    end subroutine taken_over
@@ -172,8 +182,6 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => complete, never => fault)
-      end associate
       associate (stage => model%stages(run%at%stage), ledger => self%ledger)
          if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
          if (.not. has_inertia(stage%kind) .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
@@ -190,8 +198,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run)
-      end associate
       call close_csv(self%table, fault)
    end subroutine ends
 

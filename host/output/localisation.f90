@@ -42,7 +42,7 @@ contains
    !> Exchanges what is booked; a run that is taken up tells it again.
    subroutine exchange(self, archive)
       class(localisation_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('localisation')
       call archive%exchange('shear', self%shear, 'kJ', 'shear work')
@@ -61,8 +61,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, never => fault)
-      end associate
       if (run%steps == 0) allocate (self%work(size(run%state%e)), source=0.0_wp)
    end subroutine begins
 
@@ -79,8 +77,6 @@ contains
       real(wp) :: least
       integer :: e, p, worst
 
-      associate (unused => fault)
-      end associate
       allocate (work(size(self%work)), lost(size(self%work)))
       associate (m => model%domain)
          !$omp parallel do num_threads(merge(m%threads, 1, size(m%region_of) >= WORTH_THREADS)) schedule(static) &
@@ -164,8 +160,6 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => fault)
-      end associate
       if (.not. (complete .and. model%stages(run%at%stage)%zero_displacements)) return
       self%shear = 0.0_wp
       self%localised = 0.0_wp

@@ -3,7 +3,6 @@
 !> points and contacts at the end of a stage.
 module output_tables
    use archive, only: archive_t
-   use contact_interfaces, only: contacts_t
    use contact_rows, only: contact_columns, contact_row, contact_nodes
    use csv, only: csv_t, new_csv, check_csv, write_row, hand_over, close_csv, is_open, NUMBERS
    use faults, only: fault_t
@@ -16,6 +15,7 @@ module output_tables
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
+   use surface_forces, only: surface_forces_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -40,7 +40,7 @@ contains
    !> Exchanges the lengths of the tables.
    subroutine exchange(self, archive)
       class(table_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call exchange_table('histories', self%history, archive)
       call exchange_table('contact', self%contact, archive)
@@ -88,8 +88,6 @@ contains
       type(slot_t), intent(inout) :: earlier(:)
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => earlier)
-      end associate
       if (is_open(self%contact)) then
          write (self%contact%row, NUMBERS) contact_row(model, run%system%contacts, done%scheme%dt, run%state, &
                                                        done%contact_work)
@@ -114,8 +112,6 @@ contains
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: name
 
-      associate (unused => complete)
-      end associate
       call close_csv(self%reactions, fault)
       self%reactions%bytes = 0
       name = trim(model%stages(run%at%stage)%name)
@@ -130,8 +126,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run)
-      end associate
       call close_csv(self%history, fault)
       call close_csv(self%contact, fault)
       call close_csv(self%reactions, fault)
@@ -271,7 +265,7 @@ contains
    subroutine write_contact_nodes(folder, model, contacts, stage, state, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
-      type(contacts_t), intent(in) :: contacts
+      class(surface_forces_t), allocatable, intent(in) :: contacts
       character(*), intent(in) :: stage   !< Name of the stage.
       type(state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
@@ -279,7 +273,7 @@ contains
       type(csv_t) :: table
       integer :: i
 
-      if (.not. allocated(contacts%interfaces)) return
+      if (.not. allocated(contacts)) return
       call contact_nodes(model, contacts, state, values)
       call new_csv(folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure,shear', table, &
                      fault)

@@ -43,8 +43,6 @@ contains
       logical :: known
       integer :: i
 
-      associate (unused => done, nor => earlier, never => fault)
-      end associate
       if (.not. to_terminal()) return
       now = clock()
       if (self%last_step >= 0.0_wp) then
@@ -94,8 +92,6 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, nor => run, neither => complete, never => fault)
-      end associate
       if (self%standing > 0) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', self%standing)//achar(13)
       self%standing = 0
    end subroutine stage_ends

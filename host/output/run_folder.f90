@@ -26,7 +26,7 @@ contains
    !> Exchanges the fingerprint of the scene that began the run.
    subroutine exchange(self, archive)
       class(folder_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange('origin', self%origin)
    end subroutine exchange
@@ -38,8 +38,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run)
-      end associate
       call check_mesh(self%folder, self%origin, fault)
    end subroutine fits
 
@@ -61,8 +59,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => model, neither => run, never => fault)
-      end associate
       call unlock_folder(self%folder)
    end subroutine ends
 end module run_folder

@@ -45,7 +45,7 @@ contains
    !> Exchanges the largest values so far.
    subroutine exchange(self, archive)
       class(summary_observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange_allocatable('peaks_value', self%peaks%value, 'm, kPa', &
                                         'largest unknowns of the named points so far')
@@ -60,8 +60,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (never => fault)
-      end associate
       if (run%steps > 0) return
       associate (peaks => self%peaks, points => size(model%output%points))
          allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
@@ -79,8 +77,6 @@ contains
       real(wp) :: x(FIELDS)
       integer :: i, f
 
-      associate (unused => earlier, never => fault)
-      end associate
       do i = 1, size(model%output%points)
          x = unknowns_at(model%output%points(i), run%state%x)
          do f = 1, FIELDS
@@ -100,8 +96,6 @@ contains
       logical, intent(in) :: complete
       type(fault_t), intent(inout) :: fault
 
-      associate (never => fault)
-      end associate
       if (complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '// &
          trim(model%stages(run%at%stage)%name)//': '//counted(run%at%step, 'step')//', time '// &
          short(run%state%time)//' s, '//counted(run%iterations, 'linear solve')//' and '// &
@@ -115,8 +109,6 @@ contains
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (never => fault)
-      end associate
       if (run%steps == 0) return
       if (.not. self%quiet) call print_summary(output_unit, model, run, self%peaks)
       if (self%verbose) call print_cost(output_unit, model, run, clock() - self%started)

@@ -28,7 +28,7 @@ contains
    subroutine exchange_table(name, table, archive)
       character(*), intent(in) :: name
       type(csv_t), intent(inout) :: table
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       type(fault_t) :: fault
 
       if (.not. archive%reading .and. is_open(table)) call flush_csv(table, fault)

@@ -3,8 +3,8 @@
 !> not be meant, and where a checkpoint would take it up.
 module start_report
    use, intrinsic :: iso_fortran_env, only: output_unit
+   use acting_places, only: acting_contacts
    use contact_alarm, only: contact_alarm_t
-   use contact_setup, only: contacts_act
    use faults, only: fault_t
    use generalised_alpha, only: has_rates, has_inertia
    use initial_conditions, only: balance_t
@@ -43,7 +43,7 @@ contains
          call print_warning(doubts(i))
       end do
       if (.not. only_check) return
-      call contacts_act(model, model%stages(1), run%system%contacts)
+      if (allocated(run%system%contacts)) call run%system%contacts%act(acting_contacts(model, model%stages(1)))
       call contacts%stage_begins(model, run, 1)
    end subroutine report_start
 

@@ -47,7 +47,7 @@ contains
    !> Exchanges the water of the stage so far.
    subroutine exchange(self, archive)
       class(water_alarm_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       associate (w => self%water)
          call archive%exchange('water_gained', w%gained, 'm3', 'water that the pores took up in the stage')
@@ -67,8 +67,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: e
 
-      associate (never => fault)
-      end associate
       if (.not. done%scheme%has_rates .or. .not. model%domain%with_w) return
       call book_boundaries(model%dofs, done%scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            self%water)
@@ -163,9 +161,7 @@ contains
          water%received = water%received + scheme%dt*inflow
          water%moved = water%moved + scheme%dt*(abs(inflow) + abs(outflow))
       end do
-      associate (before => old%s_rate(size(old%s) + 1:), after => new%s_rate(size(new%s) + 1:))
-         mean = before + scheme%gamma_1*(after - before)
-      end associate
+      mean = old%outflow + scheme%gamma_1*(new%outflow - old%outflow)
       water%left = water%left + scheme%dt*(mean(1) - mean(2))
       if (allocated(constraint%linear)) water%received = water%received &
          - water_through_dashpots(constraint%linear, dofs, constraint%air, new%x - old%x)

@@ -3,7 +3,6 @@
 !> is hardly stopped there. docs/theory/host.md section 4.5.
 module contact_landings
    use kinds, only: wp
-   use contact_interfaces, only: probe_contacts
    use run_state, only: run_t
    use scene_parts, only: stage_t
    use step_landings, only: LAST_STEP, SHORTEST
@@ -16,21 +15,15 @@ module contact_landings
    !> A closing nearer than this share of the step that the error asks for is not landed on: the step may hold it.
    real(wp), parameter :: NEAREST = 0.015_wp
 contains
-   !> 1 for every contact that is closed at given displacements, else 0; 0 too where a kernel refuses them.
+   !> 1 for every contact that is closed at given displacements, else 0; 0 too where these are refused.
    function closed_contacts(run, x) result(closed)
       type(run_t), intent(inout) :: run
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m]
       real(wp) :: closed(size(run%control%touching))
-      integer :: i
+      logical :: are_closed(size(closed))
 
-      closed = 0.0_wp
-      if (size(closed) == 0) return
-      if (.not. probe_contacts(run%system%contacts, x)) return
-      do i = 1, size(closed)
-         associate (t => run%system%contacts%interfaces(i))
-            if (t%acts) closed(i) = merge(1.0_wp, 0.0_wp, any(t%probe%active))
-         end associate
-      end do
+      if (size(closed) > 0) call run%system%contacts%find_closed(x, are_closed)
+      closed = merge(1.0_wp, 0.0_wp, are_closed)
    end function closed_contacts
 
    !> Whether a step in which a contact closes ends there, or has been repeated so that it should. If not, the next

@@ -48,7 +48,7 @@ contains
    !> Exchanges a control, made by new_control_state, with an archive.
    subroutine exchange_control(control, archive)
       type(control_state_t), intent(inout) :: control
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('control')
       call exchange_controller(control%controller, archive)

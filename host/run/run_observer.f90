@@ -67,10 +67,7 @@ contains
    !> Exchanges with a checkpoint what the observer needs to go on after a restart.
    subroutine exchange(self, archive)
       class(observer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-
-      associate (unused => self, neither => archive)
-      end associate
+      class(archive_t), intent(inout) :: archive
    end subroutine exchange
 
    !> Refuses a restart that the observer's files do not fit; changes nothing. Faults are those of the observer.
@@ -79,9 +76,6 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-
-      associate (unused => self, nor => model, neither => run, never => fault)
-      end associate
    end subroutine fits
 
    !> Prepares the observer for the first step of this process. Faults are those of the observer.
@@ -90,9 +84,6 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-
-      associate (unused => self, nor => model, neither => run, never => fault)
-      end associate
    end subroutine begins
 
    !> Looks at the run before a stage is prepared; contacts may be probed.
@@ -101,9 +92,6 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       integer, intent(in) :: number   !< Number of the stage.
-
-      associate (unused => self, nor => model, neither => run, never => number)
-      end associate
    end subroutine stage_begins
 
    !> Looks at an accepted step that is not yet taken over; contacts may be probed. A fault ends the run once all have
@@ -114,9 +102,6 @@ contains
       type(run_t), intent(inout) :: run
       type(accepted_step_t), intent(inout) :: done
       type(fault_t), intent(inout) :: fault
-
-      associate (unused => self, nor => model, neither => run, not => done, never => fault)
-      end associate
    end subroutine step
 
    !> Looks at an accepted step that is taken over. A checkpoint exchanges the run and the observers before it in the
@@ -128,9 +113,6 @@ contains
       type(accepted_step_t), intent(in) :: done
       type(slot_t), intent(inout) :: earlier(:)   !< Observers before this one.
       type(fault_t), intent(inout) :: fault
-
-      associate (unused => self, nor => model, neither => run, not => done, none => earlier, never => fault)
-      end associate
    end subroutine taken_over
 
    !> Looks at a run whose last attempt at a step was not accepted.
@@ -139,9 +121,6 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: dt   !< Length of the attempt [s].
-
-      associate (unused => self, nor => model, neither => run, never => dt)
-      end associate
    end subroutine repeated
 
    !> Looks at a run at the end of the stage run%at%stage. Faults are those of the observer.
@@ -151,9 +130,6 @@ contains
       type(run_t), intent(in) :: run
       logical, intent(in) :: complete   !< The stage has come to its end.
       type(fault_t), intent(inout) :: fault
-
-      associate (unused => self, nor => model, neither => run, not => complete, never => fault)
-      end associate
    end subroutine stage_ends
 
    !> Ends the work of the observer. Faults are those of the observer.
@@ -162,9 +138,6 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-
-      associate (unused => self, nor => model, neither => run, never => fault)
-      end associate
    end subroutine ends
 
    !> Puts an observer at the end of the list.
@@ -188,7 +161,7 @@ contains
    !> Exchanges with an archive what observers keep.
    subroutine exchange_all(self, archive)
       class(observers_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       integer :: i
 
       do i = 1, size(self%list)

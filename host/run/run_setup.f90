@@ -33,7 +33,7 @@ contains
       run%constraint = new_constraint(model, model%dofs)
       call initial_state(model, run%state, fault, run%tension)
       if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
-      if (fault%code == 0) call place_heavy_plates(model, run%system%contacts, run%state)
+      if (fault%code == 0) call place_heavy_plates(model, run%state)
       run%terms = model%terms
       do i = 1, size(run%terms)
          if (fault%code == 0) call run%terms(i)%term%begin_run(model, run%solution_t, fault)

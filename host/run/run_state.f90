@@ -4,7 +4,6 @@ module run_state
    use, intrinsic :: iso_fortran_env, only: int64
    use archive, only: archive_t
    use kinds, only: wp
-   use contact_interfaces, only: exchange_contacts
    use control_state, only: control_state_t, new_control_state, exchange_control
    use initial_conditions, only: tension_t
    use model_types, only: model_t, term_box_t, gravity_at
@@ -31,7 +30,7 @@ contains
    subroutine exchange_run(model, run, archive)
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       integer :: i
 
       call exchange_stage_state(size(model%stages), run%at, archive)
@@ -47,20 +46,38 @@ contains
       if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
                                                            size(model%contacts))
       call exchange_control(run%control, archive)
-      call exchange_contacts(model%dofs, run%system%contacts, archive)
-      if (.not. archive%reading .or. .not. archive%is_intact()) return
+      if (allocated(run%system%contacts)) call exchange_pairs(model%dofs%n, run%system%extra, archive)
+      if (.not. archive%reading .or. .not. archive%good) return
       run%state%gravity = gravity_at(model, run%state%time)
       call copy_state(run%state, run%next)
-      if (.not. allocated(run%system%contacts%extra)) return
-      call make_pattern(model%dofs%n, model%dofs%element, run%system%contacts%extra, run%pattern)
+      if (.not. allocated(run%system%extra)) return
+      call make_pattern(model%dofs%n, model%dofs%element, run%system%extra, run%pattern)
       deallocate (run%assembly%values)
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine exchange_run
 
+   !> Pairs of unknowns that surfaces have brought together: the ordering of the matrix depends on them.
+   subroutine exchange_pairs(unknowns, extra, archive)
+      integer, intent(in) :: unknowns
+      integer, allocatable, intent(inout) :: extra(:, :)   !< (2, pairs)
+      class(archive_t), intent(inout) :: archive
+      integer, allocatable :: pairs(:)
+
+      if (allocated(extra)) pairs = reshape(extra, [size(extra)])
+      call archive%exchange_allocatable('pairs', pairs, '-', &
+                                        'pairs of unknowns that contacts brought into the matrix')
+      if (.not. archive%reading .or. .not. allocated(pairs)) return
+      if (any(pairs < 1 .or. pairs > unknowns) .or. mod(size(pairs), 2) /= 0) then
+         call archive%refuse()
+      else
+         extra = reshape(pairs, [2, size(pairs)/2])
+      end if
+   end subroutine exchange_pairs
+
    subroutine exchange_stage_state(stages, at, archive)
       integer, intent(in) :: stages
       type(stage_state_t), intent(inout) :: at
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('stage')
       call archive%exchange('number', at%stage, '-', 'number of the stage', least=1, most=stages)

@@ -2,10 +2,9 @@
 !> Whether the ground of a scene begins in balance: the forces that nothing balances at time 0, as a stress.
 !> docs/theory/host.md section 8.
 module start_balance
-   use acting_places, only: acting_stages
+   use acting_places, only: acting_stages, acting_contacts
    use kinds, only: wp
    use boundary_loads, only: force_of, plate_loads
-   use contact_setup, only: contacts_act
    use initial_conditions, only: balance_t
    use model_types, only: model_t, factor_at, load_t
    use newton_step, only: unbalanced_forces
@@ -36,13 +35,12 @@ contains
       trial%state%v = 0.0_wp
       trial%state%a = 0.0_wp
       trial%next = trial%state
-      if (allocated(trial%system%contacts%interfaces)) &
-         trial%system%contacts%interfaces(:size(model%contacts))%acts = .false.
+      if (allocated(trial%system%contacts)) call trial%system%contacts%act(spread(.false., 1, size(model%contacts)))
       if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, forces)) return
       where (abs(forces) < ROUNDING*trial%assembly%scale) forces = 0.0_wp
       touched = 0*forces
-      if (allocated(trial%system%contacts%interfaces)) then
-         call contacts_act(model, model%stages(1), trial%system%contacts)
+      if (allocated(trial%system%contacts)) then
+         call trial%system%contacts%act(acting_contacts(model, model%stages(1)))
          if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, touched)) return
          touched = touched - forces
       end if

@@ -4,7 +4,6 @@ module step_failure
    use kinds, only: wp
    use faults, only: fault_t, raise
    use texts, only: short, whole
-   use contact_types, only: contact_message
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
    use free_bodies, only: bodies_on_contact
@@ -49,8 +48,7 @@ contains
             call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
             call raise(fault, EXIT_MATERIAL, place//', refuses: '//trim(text)//unstressed(run))
          case (CONTACT_FAILED)
-            call contact_message(run%system%contacts%status, text)
-            call raise(fault, EXIT_CONVERGENCE, place//trim(text)//'.')
+            call raise(fault, EXIT_CONVERGENCE, place//run%system%contacts%message()//'.')
          case (BODY_FREE)
             if (run%assembly%replaced > 0) then
                call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//soft_points(model, run)// &

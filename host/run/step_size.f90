@@ -186,7 +186,7 @@ contains
       type(run_t), intent(inout) :: run
 
       if (stage%controlled) call shift_rates(make_scheme(stage%kind, stage%rho_inf, dt), run%control%memory, &
-                                             run%state%v, run%state%s_rate)
+                                             run%state%v, run%state%s_rate, run%state%outflow)
    end subroutine prepare_rates
 
    !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
@@ -372,6 +372,7 @@ contains
       if (run%control%memory%based) then
          run%state%v = run%control%memory%base_rate
          run%state%s_rate = run%control%memory%base_s_rate
+         run%state%outflow = run%control%memory%base_outflow
       end if
       ! The rate of a static step before holds still; a flow may have failed where something begins.
       if (has_rates(stage%kind)) call forget(run%control%memory)
@@ -391,7 +392,7 @@ contains
       breaks = .not. has_inertia(stage%kind) .and. is_break(model, stage, run%next%time, dt)
       associate (c => run%control)
          call remember(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%next%x, run%state%v, &
-                       run%state%s_rate)
+                       run%state%s_rate, run%state%outflow)
          c%fresh = c%fresh + 1
          ! A first static step may have taken at once what acts from the start: its rate is none.
          if (c%fresh < merge(2, SETTLED, .not. has_rates(stage%kind))) c%memory%known = .false.

@@ -3,8 +3,7 @@
 module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
-   use contact_interfaces, only: stretch_ties
-   use contact_setup, only: contacts_act
+   use acting_places, only: acting_contacts
    use convergence, only: control_t, log_t
    use generalised_alpha, only: scheme_t
    use model_types, only: model_t
@@ -58,7 +57,7 @@ contains
 
       associate (stage => model%stages(number))
          control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
-         call contacts_act(model, stage, run%system%contacts)
+         if (allocated(run%system%contacts)) call run%system%contacts%act(acting_contacts(model, stage))
          ! A run that is taken up again is in the middle of its stage.
          if (run%at%stage == number) then
             call resume_stage(model, run, fault)
@@ -135,7 +134,8 @@ contains
       real(wp) :: stretched(DISPLACEMENTS, size(run%state%x, 2))
       integer :: i
 
-      call stretch_ties(run%system%contacts, run%state%x, stretched)
+      stretched = 0.0_wp
+      if (allocated(run%system%contacts)) call run%system%contacts%stretch(run%state%x, stretched)
       run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(model%domain%bodies)) = 0.0_wp
       run%state%x(:DISPLACEMENTS, :) = run%state%x(:DISPLACEMENTS, :) + stretched
       do i = 1, size(model%plates)
@@ -145,5 +145,6 @@ contains
       run%state%v = 0.0_wp
       run%state%a = 0.0_wp
       run%state%s_rate = 0.0_wp
+      run%state%outflow = 0.0_wp
    end subroutine zero_displacements
 end module time_stepping

@@ -5,17 +5,17 @@ module linear_system
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE
-   use contact_interfaces, only: contacts_t, evaluate_contacts, fit_pattern
    use convergence, only: field_scales, water_scale, water_of, body_scale, is_body
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
    use sparse_factors, only: sparse_t, analyse, factorise, SOLVED
-   use sparsity_pattern, only: pattern_t
+   use sparsity_pattern, only: pattern_t, make_pattern
+   use surface_forces, only: surface_forces_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
-   public :: system_t, solve_step, asked_for, update_contacts, MOST_STEPS
+   public :: system_t, solve_step, asked_for, update_contacts, join_unknowns, MOST_STEPS
    public :: T_ASSEMBLY, T_FACTORISATION, T_SOLUTION, T_REST, T_MATERIAL, T_CONTACT
 
    integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
@@ -27,7 +27,9 @@ module linear_system
 
    type :: system_t
       type(sparse_t) :: sparse
-      type(contacts_t) :: contacts
+      class(surface_forces_t), allocatable :: contacts   !< Not allocated: the model has none.
+      integer, allocatable :: extra(:, :)     !< (2, pairs) unknowns that surfaces and springs have brought together so
+                                              !< far, each listed both ways round.
       logical :: analysed = .false.
       logical :: reuse = .true.               !< Factors may serve later matrices.
       logical :: factored = .false.           !< There are factors worth trying.
@@ -72,7 +74,7 @@ contains
       end do
       active = 0
       system%indefinite = .false.
-      if (allocated(system%contacts%interfaces)) active = sum(system%contacts%interfaces%active)
+      if (allocated(system%contacts)) active = system%contacts%active
       if (system%factored) system%factored = system%reuse .and. active == system%active &
          .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
       if (system%factored) then
@@ -115,8 +117,8 @@ contains
       magnitude(:DISPLACEMENTS) = norm2(magnitude(:DISPLACEMENTS))
    end function asked_for
 
-   !> Contacts at given displacements, and room for them in the matrix; false if their kernels refuse.
-   !> system%contacts%status then says why.
+   !> Contacts at given displacements, and room for them in the matrix; false if they refuse these. The pattern grows
+   !> only: a contact that opens leaves it alone.
    logical function update_contacts(system, dofs, pattern, x, slopes, assembly) result(good)
       type(system_t), intent(inout) :: system
       type(dofs_t), intent(in) :: dofs
@@ -124,17 +126,30 @@ contains
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
       logical, intent(in) :: slopes
       type(assembly_t), intent(inout) :: assembly
-      logical :: changed
+      integer, allocatable :: missing(:, :)
 
       good = .true.
-      if (.not. allocated(system%contacts%interfaces)) return
-      good = evaluate_contacts(system%contacts, x, slopes)
+      if (.not. allocated(system%contacts)) return
+      good = system%contacts%evaluate(x, slopes)
       if (.not. good .or. .not. slopes) return
-      call fit_pattern(system%contacts, dofs, pattern, changed)
-      if (.not. changed) return
-      deallocate (assembly%values)
+      missing = system%contacts%missing(pattern)
+      if (size(missing) > 0) call join_unknowns(dofs, missing, system, pattern, assembly)
+   end function update_contacts
+
+   !> Makes room in the matrix for pairs of unknowns that meet from now on.
+   subroutine join_unknowns(dofs, pairs, system, pattern, assembly)
+      type(dofs_t), intent(in) :: dofs
+      integer, intent(in) :: pairs(:, :)   !< (2, pairs), each listed one way round.
+      type(system_t), intent(inout) :: system
+      type(pattern_t), intent(inout) :: pattern
+      type(assembly_t), intent(inout) :: assembly
+
+      if (.not. allocated(system%extra)) allocate (system%extra(2, 0))
+      system%extra = reshape([system%extra, pairs, pairs(2:1:-1, :)], [2, size(system%extra, 2) + 2*size(pairs, 2)])
+      call make_pattern(dofs%n, dofs%element, system%extra, pattern)
+      if (allocated(assembly%values)) deallocate (assembly%values)
       allocate (assembly%values(size(pattern%col)), source=0.0_wp)
       system%analysed = .false.
       system%factored = .false.
-   end function update_contacts
+   end subroutine join_unknowns
 end module linear_system

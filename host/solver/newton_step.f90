@@ -5,8 +5,6 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE
-   use contact_interfaces, only: add_contacts, contact_forces, follow_turns, contacts_turn, &
-                                 rounding_of_ties
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
                           rounding_in, water_of, BY_FORCES, BY_CHANGE
    use linear_forces, only: add_linear_forces
@@ -114,7 +112,7 @@ contains
          ! Those of iterates on the way, and of steps that fail, may be of any size.
          system%largest = max(system%largest, log%forces)
          system%first_error = maxval(log%first_error)
-         call follow_turns(system%contacts, fresh=.true.)
+         if (allocated(system%contacts)) call system%contacts%follow_turns(fresh=.true.)
          solution%assembly%slopes%known = .true.
          call add_elapsed(system%seconds(T_REST), at%t0)
       end associate
@@ -140,10 +138,12 @@ contains
          at%rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
          if (at%rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES), &
                                          control, domain, at)
-         call follow_turns(system%contacts, fresh=.true.)
-         if (assembly%with_change .and. allocated(system%contacts%interfaces)) then
-            log%outcome = merge(CONVERGED, CONTACT_FAILED, contact_forces(system%contacts, dofs, old%x, at%touched))
-            if (log%outcome /= CONVERGED) return
+         if (allocated(system%contacts)) then
+            call system%contacts%follow_turns(fresh=.true.)
+            if (assembly%with_change) then
+               log%outcome = merge(CONVERGED, CONTACT_FAILED, system%contacts%forces(dofs, old%x, at%touched))
+               if (log%outcome /= CONVERGED) return
+            end if
          end if
          call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
@@ -212,7 +212,9 @@ contains
          end if
          call add_what_acts(dofs, pattern, scheme, solution%constraint, old, new, at%with_slopes, at%touched, &
                             assembly, system, at%rhs, at%t0)
-         assembly%unresolved = max(rounding_of_ties(system%contacts), at%rounded(1))/control%tolerance
+         assembly%unresolved = at%rounded(1)/control%tolerance
+         if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1)) &
+                                                               /control%tolerance
          if (log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
       end associate
    end subroutine make_equations
@@ -234,7 +236,7 @@ contains
       associate (constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
          call choose_sides(dofs, solution%pattern, assembly%values, solution%next%x, at%rhs, assembly%scale, &
                            control%tolerance, constraint, turned)
-         turned = turned .or. contacts_turn(system%contacts)
+         if (allocated(system%contacts)) turned = turned .or. system%contacts%turns
          call measure(dofs, constraint, assembly, at%rhs, system%rounding, system%largest, log)
          norm = norm2(pack(at%rhs, .not. constraint%fixed))
          ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
@@ -292,7 +294,7 @@ contains
 
       at%t0 = clock()
       log%iterations = log%iterations + 1
-      call follow_turns(solution%system%contacts, fresh=.false.)
+      if (allocated(solution%system%contacts)) call solution%system%contacts%follow_turns(fresh=.false.)
       log%before = log%changed
       associate (old => solution%state, new => solution%next)
          call add_correction(dofs, at%dx, new%x, log%correction, log%changed)
@@ -410,10 +412,9 @@ contains
                                                             slopes, assembly)
       allocate (without(merge(dofs%n, 0, allocated(touched))))
       if (allocated(touched)) without(:) = assembly%residual
-      if (allocated(system%contacts%interfaces)) then
+      if (allocated(system%contacts)) then
          call add_elapsed(system%seconds(T_REST), t0)
-         call add_contacts(system%contacts, pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
-                           assembly%values)
+         call system%contacts%add(pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, assembly%values)
          call add_elapsed(system%seconds(T_CONTACT), t0)
       end if
       rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
@@ -477,8 +478,8 @@ contains
                                                        assembly)
          if (allocated(held%linear)) call add_linear_forces(held%linear, dofs, pattern, scheme, state, work, .true., &
                                                             assembly)
-         if (allocated(system%contacts%interfaces)) call add_contacts(system%contacts, pattern, 0.0_wp, .false., &
-                                                       assembly%residual, assembly%scale, assembly%values)
+         if (allocated(system%contacts)) call system%contacts%add(pattern, 0.0_wp, .false., assembly%residual, &
+                                                                  assembly%scale, assembly%values)
          rhs = held%load_0 - held%offset - assembly%residual
          call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
          if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)

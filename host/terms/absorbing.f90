@@ -62,8 +62,6 @@ contains
       class(absorbing_t), intent(in) :: self
       character(:), allocatable :: name_of_group
 
-      associate (unused => self)
-      end associate
       name_of_group = NAME
    end function group
 
@@ -360,8 +358,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (unused => fault)
-      end associate
       self%at_start = begins
       if (.not. begins) return
       do i = 1, size(self%sides)
@@ -443,10 +439,8 @@ contains
    subroutine exchange(self, solution, archive)
       class(absorbing_t), intent(inout) :: self
       type(solution_t), intent(inout) :: solution
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
-      associate (unused => self)
-      end associate
       call archive%exchange('offset', solution%constraint%offset, 'kN, m3/s', &
                             'flow that is subtracted, forces that hold the ground')
    end subroutine exchange

@@ -6,6 +6,7 @@ module buffer
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
+   use linear_system, only: join_unknowns
    use model_types, only: model_t
    use name_search, only: defined_name, check_stages
    use namelists, only: group_t
@@ -14,7 +15,6 @@ module buffer
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t, item_of, groups_named
    use solution, only: solution_t
-   use sparsity_pattern, only: make_pattern
    use springs, only: spring_t
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
@@ -42,8 +42,6 @@ contains
       class(buffer_t), intent(in) :: self
       character(:), allocatable :: name_of_group
 
-      associate (unused => self)
-      end associate
       name_of_group = NAME
    end function group
 
@@ -106,23 +104,17 @@ contains
       type(model_t), intent(in) :: model
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
-      integer :: pairs(2, 2*size(self%all)), i
+      integer :: pairs(2, size(self%all)), i
 
-      associate (unused => fault)
-      end associate
       do i = 1, size(self%all)
          associate (spring => self%all(i)%spring)
             spring%upper = model%dofs%of(AT_U_Z, model%plates(self%plates(1, i))%node)
             spring%lower = model%dofs%of(AT_U_Z, model%plates(self%plates(2, i))%node)
-            pairs(:, 2*i - 1) = [spring%upper, spring%lower]
-            pairs(:, 2*i) = [spring%lower, spring%upper]
+            pairs(:, i) = [spring%upper, spring%lower]
          end associate
       end do
       solution%constraint%springs = self%all%spring
-      solution%system%contacts%extra = pairs
-      call make_pattern(model%dofs%n, model%dofs%element, pairs, solution%pattern)
-      if (allocated(solution%assembly%values)) deallocate (solution%assembly%values)
-      allocate (solution%assembly%values(size(solution%pattern%col)), source=0.0_wp)
+      call join_unknowns(model%dofs, pairs, solution%system, solution%pattern, solution%assembly)
    end subroutine begin_run
 
    subroutine begin_stage(self, model, begins, solution, fault)
@@ -133,8 +125,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (u1 => begins, u2 => fault)
-      end associate
       do i = 1, size(self%all)
          solution%constraint%springs(i)%acts = acts_in(self%all(i)%stages, model%stages(solution%at%stage)%name)
       end do

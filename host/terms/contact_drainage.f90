@@ -9,8 +9,8 @@ module contact_drainage
    use key_table, only: key_table_t
    use model_types, only: model_t
    use namelists, only: group_t
-   use contact_types, only: contact_message
-   use contact_interfaces, only: start_points
+   use contact_interfaces, only: contacts_t
+   use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
@@ -107,33 +107,39 @@ contains
       real(wp), intent(in) :: dt
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
-      character(400) :: text
+
+      select type (contacts => solution%system%contacts)
+      type is (contacts_t)
+         if (contacts%start_points(solution%state%x)) then
+            call seal(self, model, contacts, solution%constraint)
+         else
+            call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//contacts%message()//'.')
+         end if
+      end select
+   end subroutine before_step
+
+   subroutine seal(self, model, contacts, constraint)
+      class(contact_drainage_t), intent(in) :: self
+      type(model_t), intent(in) :: model
+      type(contacts_t), intent(inout) :: contacts
+      type(constraint_t), intent(inout) :: constraint
       logical, allocatable :: sealed(:)
       integer :: c, f
 
-      associate (unused => dt)
-      end associate
-      associate (contacts => solution%system%contacts, constraint => solution%constraint)
-         if (.not. start_points(contacts, solution%state%x)) then
-            call contact_message(contacts%status, text)
-            call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//trim(text)//'.')
-            return
-         end if
-         if (.not. allocated(constraint%released)) &
-            allocate (constraint%released(size(model%fixes), size(model%domain%mesh%x, 2)))
-         constraint%released = .false.
-         do c = 1, size(model%contacts)
-            associate (t => contacts%interfaces(c))
-               t%sealed = 0
-               if (.not. self%follows(c) .or. .not. t%acts) cycle
-               sealed = t%point%pressure > 0.0_wp .and. t%point%coverage >= HALF
-               t%sealed = count(sealed)
-               do f = 1, size(model%fixes)
-                  if (self%gives_way(f, c)) constraint%released(f, t%slave%node) = &
-                     constraint%released(f, t%slave%node) .or. sealed
-               end do
-            end associate
-         end do
-      end associate
-   end subroutine before_step
+      if (.not. allocated(constraint%released)) &
+         allocate (constraint%released(size(model%fixes), size(model%domain%mesh%x, 2)))
+      constraint%released = .false.
+      do c = 1, size(model%contacts)
+         associate (t => contacts%interfaces(c))
+            t%sealed = 0
+            if (.not. self%follows(c) .or. .not. t%acts) cycle
+            sealed = t%point%pressure > 0.0_wp .and. t%point%coverage >= HALF
+            t%sealed = count(sealed)
+            do f = 1, size(model%fixes)
+               if (self%gives_way(f, c)) constraint%released(f, t%slave%node) = &
+                  constraint%released(f, t%slave%node) .or. sealed
+            end do
+         end associate
+      end do
+   end subroutine seal
 end module contact_drainage

@@ -26,9 +26,6 @@ contains
    !> Its key is one of regions, which are built before.
    subroutine declare(k)
       type(key_table_t), intent(inout) :: k
-
-      associate (unused => k)
-      end associate
    end subroutine declare
 
    !> Raises no fault.
@@ -39,8 +36,6 @@ contains
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
 
-      associate (u1 => self, u2 => fault, u3 => scene)
-      end associate
       there = any(model%domain%regions%drainage == DRAINED .or. model%domain%regions%drainage == UNDRAINED)
       if (there) call give_pressures(model)
    end subroutine build
@@ -81,8 +76,6 @@ contains
       type(solution_t), intent(inout) :: solution
       integer :: i, k, at
 
-      associate (u1 => self, u2 => time)
-      end associate
       associate (domain => model%domain, c => solution%constraint)
          do k = 1, size(domain%open_nodes)
             do i = AT_P_W, AT_P_C
@@ -101,8 +94,6 @@ contains
       type(model_t), intent(in) :: model
       type(solution_t), intent(inout) :: solution
 
-      associate (unused => self)
-      end associate
       call follow_undrained(model%domain, model%dofs%of, solution%next%x)
    end subroutine complete
 

@@ -2,15 +2,15 @@
 !> Friction of contacts, keys of &contact: what it starts a step from, and what it has dissipated in one. The law of a
 !> node is in contact_friction. docs/theory/contact.md section 9.
 module friction
+   use archive, only: archive_t
    use exit_codes, only: EXIT_CONVERGENCE
    use kinds, only: wp
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
    use model_types, only: model_t
    use namelists, only: group_t
-   use contact_friction, only: has_friction
-   use contact_types, only: contact_options_t, contact_message
-   use contact_interfaces, only: begin_friction, accept_friction
+   use contact_interfaces, only: contacts_t
+   use contact_types, only: contact_options_t, has_friction
    use faults, only: fault_t, raise
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t, groups_named
@@ -24,7 +24,7 @@ module friction
    type, extends(scene_term_t) :: friction_t
    contains
       procedure, nopass :: declare
-      procedure :: build, before_step, accept
+      procedure :: build, before_step, accept, exchange
    end type friction_t
 contains
    subroutine declare(k)
@@ -55,8 +55,6 @@ contains
       type(key_table_t) :: table
       integer :: c
 
-      associate (u1 => self, u2 => fault)
-      end associate
       there = .false.
       allocate (groups, source=groups_named(scene, IN_GROUP))
       do c = 1, size(model%contacts)
@@ -73,13 +71,12 @@ contains
       real(wp), intent(in) :: dt
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
-      character(400) :: text
 
-      associate (u1 => self, u2 => model, u3 => dt)
-      end associate
-      if (begin_friction(solution%system%contacts, solution%state%x)) return
-      call contact_message(solution%system%contacts%status, text)
-      call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//trim(text)//'.')
+      select type (contacts => solution%system%contacts)
+      type is (contacts_t)
+         if (.not. contacts%begin_friction(solution%state%x)) &
+            call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//contacts%message()//'.')
+      end select
    end subroutine before_step
 
    !> The tractions at the end of the step, and what sliding has dissipated.
@@ -89,9 +86,21 @@ contains
       real(wp), intent(inout) :: dissipated
       real(wp) :: by_sliding
 
-      associate (unused => self)
-      end associate
-      call accept_friction(solution%system%contacts, solution%next%x, by_sliding)
-      dissipated = dissipated + by_sliding
+      select type (contacts => solution%system%contacts)
+      type is (contacts_t)
+         call contacts%accept_friction(solution%next%x, by_sliding)
+         dissipated = dissipated + by_sliding
+      end select
    end subroutine accept
+
+   subroutine exchange(self, solution, archive)
+      class(friction_t), intent(inout) :: self
+      type(solution_t), intent(inout) :: solution
+      class(archive_t), intent(inout) :: archive
+
+      select type (contacts => solution%system%contacts)
+      type is (contacts_t)
+         call contacts%exchange_friction(archive)
+      end select
+   end subroutine exchange
 end module friction

@@ -117,8 +117,6 @@ contains
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
 
-      associate (u1 => self, u2 => fault)
-      end associate
       associate (c => solution%constraint, stage => model%stages(solution%at%stage), now => solution%state%time)
          c%rain_0 = rain_at(model, stage, model%dofs, now)
          c%rain_1 = rain_at(model, stage, model%dofs, now + dt)

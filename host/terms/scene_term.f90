@@ -40,8 +40,6 @@ contains
       class(scene_term_t), intent(in) :: self
       character(:), allocatable :: name
 
-      associate (unused => self)
-      end associate
       name = ''
    end function group
 end module scene_term

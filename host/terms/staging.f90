@@ -63,8 +63,6 @@ contains
       logical :: has(size(scene%regions), size(model%stages))
       integer :: i, s
 
-      associate (unused => self)
-      end associate
       there = .false.
       allocate (groups, source=groups_named(scene, IN_GROUP))
       do i = 1, size(groups)
@@ -215,8 +213,6 @@ contains
       type(solution_t), intent(inout) :: solution
       type(fault_t), intent(inout) :: fault
 
-      associate (unused => fault)
-      end associate
       associate (c => solution%constraint, now => solution%state%time)
          c%load_0 = c%load_0 - (1 - growth_at(model, solution, now))*self%held_up
          c%load_1 = c%load_1 - (1 - growth_at(model, solution, now + dt))*self%held_up
@@ -232,8 +228,6 @@ contains
       type(solution_t), intent(inout) :: solution
       integer :: i
 
-      associate (unused => time)
-      end associate
       associate (c => solution%constraint, dofs => model%dofs)
          do i = 1, dofs%n
             if (.not. self%absent(i)) cycle

@@ -42,8 +42,6 @@ contains
       class(strength_t), intent(in) :: self
       character(:), allocatable :: name_of_group
 
-      associate (unused => self)
-      end associate
       name_of_group = NAME
    end function group
 
@@ -156,8 +154,6 @@ contains
       type(fault_t), intent(inout) :: fault
       logical :: changes
 
-      associate (u1 => begins, u2 => fault)
-      end associate
       call change_laws(self%changes, model, solution%at%t_start, solution%at%t_start, solution%next, changes)
    end subroutine begin_stage
 
@@ -170,8 +166,6 @@ contains
       type(fault_t), intent(inout) :: fault
       logical :: changes
 
-      associate (unused => fault)
-      end associate
       call change_laws(self%changes, model, solution%state%time, solution%state%time + dt, solution%next, changes)
       if (changes) solution%assembly%slopes%known = .false.
    end subroutine before_step

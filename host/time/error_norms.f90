@@ -28,9 +28,11 @@ module error_norms
       real(wp) :: dt = 0.0_wp               !< Step from them to the present ones, which both belong to [s].
       real(wp), allocatable :: rate(:, :)   !< (fields, nodes)
       real(wp), allocatable :: s_rate(:)    !< (points)
+      real(wp) :: outflow(2) = 0.0_wp
       ! The present ones as the last step left them; attempts of different length move them from here.
       logical :: based = .false.
       real(wp), allocatable :: base_rate(:, :), base_s_rate(:)
+      real(wp) :: base_outflow(2) = 0.0_wp
    end type rate_memory_t
 contains
    !> Memory without rates of earlier steps.
@@ -45,13 +47,14 @@ contains
    !> Exchanges a memory, made by new_memory, with an archive.
    subroutine exchange_memory(memory, archive)
       type(rate_memory_t), intent(inout) :: memory
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange('rates_known', memory%known, &
                             'rates of the step before are known, with nothing sudden since')
       call archive%exchange('rates_dt', memory%dt, 's', 'step from those rates to the present ones')
       call archive%exchange('rate', memory%rate, 'm/s, kPa/s', 'rates of the unknowns one step back')
       call archive%exchange('s_rate', memory%s_rate, '1/s', 'rates of saturation one step back')
+      call archive%exchange('outflow', memory%outflow, 'm3/s', 'flows out of the ground one step back')
    end subroutine exchange_memory
 
    !> C of the leading error of a step for accelerations [-]. 1/12 + 3/8 (l_a - l_f)**2: docs/theory/host.md section
@@ -73,16 +76,18 @@ contains
    !> Moves the rates of the present state to where a step of another length expects them. docs/theory/host.md section
    !> 4.5. Rates stay in static steps and where none are known from before; in dynamic steps those of the displacements
    !> stay.
-   pure subroutine shift_rates(scheme, memory, v, s_rate)
+   pure subroutine shift_rates(scheme, memory, v, s_rate, outflow)
       type(scheme_t), intent(in) :: scheme   !< Scheme of the step to come.
       type(rate_memory_t), intent(inout) :: memory
       real(wp), intent(inout) :: v(:, :), s_rate(:)   !< (fields, nodes) rates [m/s, kPa/s]; (points) rate of S_w [1/s].
+      real(wp), intent(inout) :: outflow(:)   !< Flows out of the ground, which move as rates do [m3/s].
       real(wp) :: share
       integer :: first
 
       if (.not. memory%based) then
          memory%base_rate = v
          memory%base_s_rate = s_rate
+         memory%base_outflow = outflow
          memory%based = .true.
       end if
       if (.not. scheme%has_rates .or. .not. memory%known) return
@@ -90,6 +95,7 @@ contains
       share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
       v(first:, :) = memory%base_rate(first:, :) + share*(memory%base_rate(first:, :) - memory%rate(first:, :))
       s_rate = memory%base_s_rate + share*(memory%base_s_rate - memory%s_rate)
+      outflow = memory%base_outflow + share*(memory%base_outflow - memory%outflow)
    end subroutine shift_rates
 
    !> Errors of all unknowns in a step from x0 to x1; `known` says of which fields. docs/theory/host.md section 4.5. x,
@@ -139,16 +145,17 @@ contains
    end function static_error
 
    !> Keeps the rates of the start of an accepted step. x: (fields, nodes) values at both ends of the step [m, kPa]; v0:
-   !> their rates at its start [1/s of it]; s_rate: (points) rate of S_w there [1/s]. In static steps the rates are
-   !> those of the straight step.
-   pure subroutine remember(scheme, memory, x0, x1, v0, s_rate)
+   !> their rates at its start [1/s of it]; s_rate: (points) rate of S_w there [1/s]; outflow: flows out of the ground
+   !> there [m3/s]. In static steps the rates are those of the straight step.
+   pure subroutine remember(scheme, memory, x0, x1, v0, s_rate, outflow)
       type(scheme_t), intent(in) :: scheme
       type(rate_memory_t), intent(inout) :: memory
-      real(wp), intent(in) :: x0(:, :), x1(:, :), v0(:, :), s_rate(:)
+      real(wp), intent(in) :: x0(:, :), x1(:, :), v0(:, :), s_rate(:), outflow(:)
 
       memory%rate = v0
       if (.not. scheme%has_rates) memory%rate = (x1 - x0)/scheme%dt
       memory%s_rate = s_rate
+      memory%outflow = outflow
       memory%dt = scheme%dt
       memory%based = .false.
       memory%known = .true.

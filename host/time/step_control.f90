@@ -37,7 +37,7 @@ contains
    !> Exchanges a controller between two steps with an archive.
    subroutine exchange_controller(controller, archive)
       type(controller_t), intent(inout) :: controller
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%exchange('dt', controller%dt, 's', 'next step')
       call archive%exchange('last_ratio', controller%last_ratio, '-', &

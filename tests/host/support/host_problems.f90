@@ -2,6 +2,7 @@
 !> Small scenes for the tests of the host, written as text so that the reader of scenes takes part.
 module host_problems
    use, intrinsic :: iso_fortran_env, only: int64
+   use contact_interfaces, only: contacts_t
    use energy_ledger, only: ledger_t
    use kinds, only: wp
    use ledger_observer, only: ledger_observer_t
@@ -16,7 +17,7 @@ module host_problems
    use time_stepping, only: run_stages
    implicit none (type, external)
    private
-   public :: build, ask, run_unseen, run_with_ledger, sand, soil_laws, square
+   public :: build, ask, contacts_of, run_unseen, run_with_ledger, sand, soil_laws, square
 
    character(*), parameter, public :: NL = new_line('a')
 contains
@@ -57,7 +58,19 @@ contains
       end select
    end subroutine run_with_ledger
 
-   !> The same, with the fault for the caller.
+   !> The contacts of a run that has some.
+   function contacts_of(run) result(contacts)
+      type(run_t), target, intent(inout) :: run
+      type(contacts_t), pointer :: contacts
+
+      contacts => null()
+      select type (forces => run%system%contacts)
+      type is (contacts_t)
+         contacts => forces
+      end select
+   end function contacts_of
+
+   !> A scene from its text, with the fault for the caller.
    subroutine ask(text, model, run, fault)
       character(*), intent(in) :: text
       type(model_t), intent(out) :: model

@@ -38,8 +38,6 @@ contains
       class(ground_spring_t), intent(in) :: self
       character(:), allocatable :: name_of_group
 
-      associate (unused => self)
-      end associate
       name_of_group = NAME
    end function group
 
@@ -102,8 +100,6 @@ contains
       integer, allocatable :: at(:)
       integer :: i
 
-      associate (unused => fault)
-      end associate
       allocate (at(0))
       if (.not. allocated(solution%constraint%linear)) allocate (solution%constraint%linear(0))
       do i = 1, size(self%springs)
@@ -126,8 +122,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (u1 => dt, u2 => fault)
-      end associate
       do i = 1, size(self%springs)
          solution%constraint%linear(self%springs(i)%place)%acts = &
             acts_in(self%springs(i)%stages, model%stages(solution%at%stage)%name)
