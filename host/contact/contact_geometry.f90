@@ -114,6 +114,7 @@ contains
       type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)   !< (2, nodes) [m]
       type(contact_status_t), intent(out) :: status
+      real(wp) :: rounding   !< A support that holds a node on the axis may leave so much [m].
       integer :: i
 
       if (size(slave_x, 2) /= geometry%slave_nodes) then
@@ -126,8 +127,9 @@ contains
       if (status%code /= CONTACT_OK) return
       call check_surface(master_x, geometry%master_edges, .true., status)
       if (status%code /= CONTACT_OK .or. .not. geometry%options%axisymmetric) return
+      rounding = epsilon(1.0_wp)*maxval(abs(slave_x))
       do i = 1, geometry%slave_nodes
-         if (slave_x(1, i) >= 0.0_wp) cycle
+         if (slave_x(1, i) >= -rounding) cycle
          status = contact_fail(CONTACT_BAD_RADIUS, i, .false., slave_x(1, i))
          return
       end do

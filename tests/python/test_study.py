@@ -148,6 +148,26 @@ def test_the_error_told_of_a_pulse_is_that_of_dalembert():
     check("a picture", (folder / "accuracy.png").stat().st_size > 10000)
 
 
+def test_steps_that_the_tolerance_does_not_choose_are_no_small_error():
+    # dt_max keeps steps short, with any tolerance that is tried first: what these differ by is little of their error.
+    text = re.sub("&history .*/", "&history name = 'p' times = 0, 0.002, 9 values = 0, 1, 1 /", BAR)
+    text = text.replace("duration = 0.03", "duration = 0.12 dt = 1e-5 dt_growth = 2 dt_max = 1.2e-3")
+    done, errors, folder = study("accuracy", text, "dt_max", "--accuracy", "1e-1")
+    found = run_of(folder, done)
+    fineness = found.name.split("_")[0][1:]
+    subprocess.run([ENVIRONMENT["MUD_HOST"], work / "dt_max.nml", "--fineness", fineness, "--step-tolerance", "1e-4",
+                    "--quiet", "--output", work / "dt_max_fine"], env=ENVIRONMENT, check=True)
+    fine, rough = (histories.Histories(x) for x in (work / "dt_max_fine", found))
+    true = {n: histories.distance(rough, fine, n) for n in errors}
+    check("told by the steps", all(true[n] / 3 < errors[n]["steps"] < 5 * true[n] for n in errors), (errors, true))
+    # A single given step is the same at all looser tolerances.
+    text = COLUMN.format("dt = 40 steps = 'given'").replace("value = 100", "value = 100 history = 'h'")
+    text += "&history name = 'h' times = 0, 40 values = 0, 1 /\n"
+    done, errors, folder = study("accuracy", text, "one_step", "--goals", "top.u_z", "--accuracy", "1e-1")
+    steps = len(HostRun(run_of(folder, done)).histories["time"]) - 1
+    check("it is not met with one", steps > 1 and errors["top.u_z"]["steps"] > 0, (steps, errors))
+
+
 def test_meshes_of_files_are_split():
     ring = root / "verification/studies/price/ring.nml"
     text = ring.read_text().replace("file = '", f"file = '{ring.parent}/")
@@ -200,6 +220,9 @@ def test_every_end_has_its_sentence_and_its_exit_code():
     check("nothing moves", "no named point" in done.stderr, done.stderr)
     done, _, _ = study("accuracy", BLOCK.format(""), "goal", "--goals", "top.u_x", code=3)
     check("an answer that is none", "there is no answer top.u_x; there are top.u_r" in done.stderr, done.stderr)
+    text = COLUMN.format("dt = 1 steps = 'given' step_ends = 'ends.txt'")
+    done, _, _ = study("accuracy", text, "ends", code=2)
+    check("steps of a file", "&stage load takes its steps from ends.txt" in done.stderr, done.stderr)
     done, _, _ = study("accuracy", "&scene name = 'a' /\n", "part", code=2)
     check("half a scene", "the group &mesh is missing" in done.stderr, done.stderr)
 
@@ -273,6 +296,15 @@ def test_a_run_that_says_that_shear_localises_ends_the_study():
         done.stderr,
     )
     check("and no finer mesh is run", errors and not list(folder.glob("F4_*")), sorted(folder.glob("F*")))
+
+
+def test_a_study_repeats_what_its_finest_run_warns_of():
+    extra = 'sys.stderr.write("".join(f"mud_host: warning: stage s{i}, time {i} s: F {F}, odd\\n" for i in (1, 2)))'
+    done, _, _ = fake("warns", "1 + 0.1 / F", code=0, extra=extra)
+    told = [line for line in done.stderr.splitlines() if "warning of the finest run" in line]
+    F = re.search(r"fineness (\S+), step", done.stdout.splitlines()[-1]).group(1)
+    check("the first of two that are alike", len(told) == 1 and f"time 1 s: F {float(F)}, odd (and 1 more)" in told[0],
+          done.stderr)
 
 
 def test_a_pulse_between_two_steps_is_a_difference():
@@ -415,11 +447,11 @@ def test_pilots_cost_a_twentieth_of_the_run_or_nothing():
         done.stderr,
     )
     # What is short depends on the machine: the same run is below what it is quoted at, and above half of that.
-    done, _, _ = study("effects", scenes.strip(80), "short", "--least-run", "1e4")
+    done, _, _ = study("effects", scenes.strip(110), "short", "--least-run", "1e4")
     told = re.search(r"quoted at (\S+) s of processor time, less than 10000 s", done.stdout)
     check("one where the run is short", "1 pilots" in done.stdout and told, done.stdout)
     least = float(told.group(1)) / 2
-    done, _, folder = study("effects", scenes.strip(80), "long", "--least-run", str(least))
+    done, _, folder = study("effects", scenes.strip(110), "long", "--least-run", str(least))
     spent, quote = map(float, re.search(r"pilots, (\S+) s .* quoted at (\S+) s", done.stdout).groups())
     check("a twentieth of a long one", quote > least and spent <= quote / 20, (spent, quote))
     table = {row["effect"]: row["on"] for row in tables.rows(folder / "effects.csv")}

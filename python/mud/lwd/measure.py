@@ -7,7 +7,6 @@ import csv
 import json
 import math
 import pathlib
-import re
 import time
 from dataclasses import dataclass
 
@@ -94,7 +93,7 @@ def measure(test: Test, folder: pathlib.Path, host="", quiet=False, fineness=FIN
         for name in told[3]
     }
     last = scene.folder / runs[-1].key.folder
-    return Measured(test, fine, errors, _warnings(test, fine, last, runs[-1]), last, scene.spent)
+    return Measured(test, fine, errors, _warnings(test, fine, runs[-1]), last, scene.spent)
 
 
 def _write(path, text):
@@ -103,18 +102,8 @@ def _write(path, text):
         path.write_text(text, encoding="utf-8")
 
 
-def _folded(warnings):
-    """Of warnings that differ by stage, time and number the first, and how many more there are."""
-    first: dict[str, list[str]] = {}
-    for text in warnings:
-        kind = re.sub(r"[-+.\d]+(e[-+]?\d+)?", "0", re.sub(r"^stage \w+", "", text))
-        first.setdefault(kind, []).append(text)
-    return [same[0] + f" (and {len(same) - 1} more)" * (len(same) > 1) for same in first.values()]
-
-
-def _warnings(test, answers, folder, run):
-    said = (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").splitlines()
-    found = _folded([line.split("warning: ", 1)[1] for line in said if "warning: " in line])
+def _warnings(test, answers, run):
+    found = list(run.warnings)
     if run.localised and run.localised not in " ".join(found):
         found.append(f"{run.localised}: displacements there depend on the cells")
     if answers.tension > 0.05 * test.device.stress:

@@ -30,6 +30,7 @@ MOST = 2.0  # times the last difference, however slowly they fall
 UNKNOWN_MESH, UNKNOWN_STEPS = 0.5, 0.75  # of the last difference, where no ratio is known
 USUAL_MESH, USUAL_STEPS = 1.5, 0.8  # orders in the cells and the tolerance, to choose the next pair
 ENOUGH = 0.9  # of what is asked: a pair that is expected to hold so much is worth its runs
+LEAST_FINER = 1.01  # how much less steps err at least, from one tolerance to the next: of as many, rounding moves some
 SMALL = 1 / 30  # of what is asked: steps that err less on one mesh are not measured again on the next
 FINEST_OF_FILE = 8  # times the cells of a mesh of a file: mud_host splits triangles thrice
 SOLVE_SHARE = 1 / 3  # of what is asked: from here on Newton's method and the stress integration are tightened
@@ -83,6 +84,13 @@ class Study:
         self.goals = goals or np.ravel(scene.list_of("scene")[0].get("goals", [])).tolist()
         self.pairs: list[Pair] = []
         self.finest = FINEST_OF_FILE if "file" in scene.list_of("mesh")[0] else np.inf
+        # Straight paths of linear soil without time have no error by steps.
+        stages, fields = scene.list_of("stage"), str(scene.list_of("scene")[0].get("fields", "u")).lower()
+        self.steps_matter = (
+            fields != "u" or bool({"mud", "umat", "contact"} & set(scene.groups))
+            or any(str(stage.get("analysis")).lower() == "dynamic" for stage in stages)
+            or any(region.get("viscosity") for region in scene.list_of("region"))
+        )
         self.tight = 0  # tenths of the tolerances of Newton and the stress integration, of all runs
         self.solve: dict[str, tuple[float, float]] = {}  # errors by Newton and the stress integration, by answer
         self.expected_solve: dict[str, tuple[float, float]] = {}  # the same where they cannot be measured
@@ -138,12 +146,18 @@ class Study:
         return [g for g in self.goals if run.histories.change(g) > 0]
 
     def of_steps(self, rough, coarse, name):
-        """Error by the steps, from tolerances on the coarser mesh."""
-        differences = [difference(rough.histories, coarse.histories, name)]
+        """Error by the steps, from tolerances on the coarser mesh. Where other things keep steps short (dt_max, kinks,
+        growth) their number grows by less than it should, and with its square what a difference says of the error."""
+        differences, unseen = [difference(rough.histories, coarse.histories, name)], 1.0
+        if self.steps_matter:
+            finer = (coarse.histories.steps / rough.histories.steps) ** 2
+            if not differences[0].size and finer <= 1:
+                return 1.0  # The same steps say nothing.
+            unseen = (HALF_DECADE - 1) / (min(max(finer, LEAST_FINER), HALF_DECADE) - 1)
         rougher = self.known(rough.key.fineness, looser(rough.key.tolerance))
         if rougher and rougher is not rough:
             differences.append(difference(rougher.histories, rough.histories, name))
-        return left(differences, UNKNOWN_STEPS, STEPS)
+        return unseen * left(differences, UNKNOWN_STEPS, STEPS)
 
     def of_mesh(self, coarse, fine, steps, name):
         """Error by the mesh, and its order."""

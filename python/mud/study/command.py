@@ -65,13 +65,20 @@ def _share(text):
     return value
 
 
+def tell(study):
+    """How a study ended where that is not as asked, and what its finest run warns of."""
+    if study.state != MET:
+        print(f"mud_study: {study.state}: {study.sentence}", file=sys.stderr, flush=True)
+    for text in study.pairs[-1].run.warnings if study.pairs else []:
+        print(f"mud_study: warning of the finest run: {text}", file=sys.stderr)
+
+
 def accuracy(scene: Scene, args, folder=None) -> int:
     """The study `accuracy`: table and picture in the folder of the study, the line."""
     folder = folder or scene.folder
     study = Study(scene, args.accuracy, args.goals)
     study.search()
-    if study.state != MET:
-        print(f"mud_study: {study.state}: {study.sentence}", file=sys.stderr, flush=True)
+    tell(study)
     if study.pairs:
         pair = study.pairs[-1]
         write_table(folder / "accuracy.csv", pair)
@@ -105,8 +112,7 @@ def price(scene: Scene, args) -> int:
             expected = study.expected(level) if study.pairs else None
             rows.append((level, study.state, *(expected or ("",) * 4)))
             recipes.append(recipe(scene, study.key(*expected[:2])) if expected else "")
-    if study.state != MET:
-        print(f"mud_study: {study.state}: {study.sentence}", file=sys.stderr, flush=True)
+    tell(study)
     if study.pairs:
         with open(scene.folder / "price.csv", "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)

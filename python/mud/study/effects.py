@@ -13,7 +13,6 @@ import copy
 import csv
 import hashlib
 import math
-import pathlib
 import subprocess
 from dataclasses import dataclass
 
@@ -22,7 +21,7 @@ import numpy as np
 from ..errors import InputError
 from ..host import HostRun
 from .histories import between
-from .runs import DEFAULT_TOLERANCE, Failed, Run, Scene, list_of, processor
+from .runs import DEFAULT_TOLERANCE, Failed, Run, Scene, files_of, list_of, processor
 
 EARTH = 9.81  # [m/s2]
 FIELDS = ("u", "u-p_w", "u-p_w-p_c")
@@ -36,14 +35,11 @@ OF_STUDY = ("effects", "effects_tolerance", "effects_pilot_share", "effects_on_w
 
 TOLERANCE = 0.01  # an effect that changes an answer by more matters
 PILOT_FACTOR = 2.0  # an influence is taken so many times as large, for the coarseness of the pilot
-PILOT_STEPS = 1e-2  # step tolerance of pilots, and Newton's beside given steps
-PILOT_NEWTON = 1e-4
+PILOT_STEPS, PILOT_NEWTON = 1e-2, 1e-4  # step tolerance of pilots, and Newton's beside given steps
 ELEMENTS = 60  # that a pilot's mesh has at least, where the scene's has
 MOST_TIMES, MOST_ALONE = 5.0, 60.0  # a pilot may cost so many times that of all effects; that one so many seconds
 SHARE, LEAST_RUN = 0.05, 30.0  # of the run that pilots may cost; below so much there are none [s of processor]
-LEAST_PILOTS = 4  # two of the scene, and two of effects
-CELLS, STEPS = 2.0, 0.3  # time grows with the cells to this power, and falls with the step tolerance to this one
-USUAL_STEPS = 100  # of a pilot, as long as none has run
+LEAST_PILOTS = 5  # three of the scene, and two of effects
 NO_ANSWER, NO_PRESSURE = 1e-4, 1e-3  # smaller ranges are no answers: of the largest of a kind; of the stresses' change
 OVER_SHARE = "not tried: pilots would cost too much"
 
@@ -110,11 +106,8 @@ def _needs_inertia(scene, i):
 def write_scene(scene, path, folder):
     """A scene as a file; files that it names are seen from `folder`."""
     scene = copy.deepcopy(scene)
-    for name in dict.fromkeys(scene):
-        for group in list_of(scene, name):
-            for key in ("file", "library"):
-                if key in group and (pathlib.Path(folder) / str(group[key])).exists():
-                    group[key] = str((pathlib.Path(folder) / str(group[key])).resolve())
+    for group, key, named in files_of(scene, folder):
+        group[key] = str(named.resolve())
     scene.write(path, force=True)
 
 
@@ -127,7 +120,7 @@ class Effects:
         self.tolerance = float(one.get("effects_tolerance", TOLERANCE))
         self.accuracy = float(one.get("step_tolerance", DEFAULT_TOLERANCE))
         self.full, self.rows, self.auto = settled(scene.groups, full=True), [], leaves_open(scene.groups)
-        self.spent, self.quote, self.pilots = 0.0, 0.0, 0
+        self.spent, self.quote, self.pilots, self.start = 0.0, 0.0, 0, 0.0
         scene.folder.mkdir(parents=True, exist_ok=True)
         path = scene.folder / "pilot.nml"
         text = copy.deepcopy(self.full)
@@ -141,8 +134,11 @@ class Effects:
                        if f["field"] in ("u_r", "u_z") and (f.get("value") or f.get("value_slope"))
                        and f.get("motion") != "acceleration"}
         mesh = scene.list_of("mesh")[0]
-        elements = 1 if "file" in mesh else 2 * int(np.sum(mesh["r_cells"])) * int(np.sum(mesh["z_cells"]))
-        self.cells = max(1, math.isqrt(elements // ELEMENTS))
+        axes = [] if "file" in mesh else [np.ravel(mesh[axis]) for axis in ("r_cells", "z_cells")]
+        self.cells = max(1, math.isqrt(2 * math.prod(int(n.sum()) for n in axes) // ELEMENTS))
+        coarse = [np.maximum(1, np.rint(n / self.cells)) for n in axes]
+        # How many times as many nodes the run has as a pilot.
+        self.nodes = math.prod((2 * n.sum() + 1) / (2 * m.sum() + 1) for n, m in zip(axes, coarse))
         self._list_open()
 
     # Rows ---------------------------------------------------------------------------------------------------------
@@ -187,7 +183,8 @@ class Effects:
         before = processor()
         words = [self.scene.host, self.runs.path, "--check", "--quiet", "--fineness", f"{1 / self.cells:g}"]
         done = subprocess.run([*words, "--set", f"scene.without={','.join(out)}"], capture_output=True, text=True)
-        self.spent += processor() - before
+        self.start = processor() - before
+        self.spent += self.start
         return "" if done.returncode and len(out) > 1 else done.stderr + " "
 
     def without(self, rows) -> tuple[str, ...]:
@@ -207,20 +204,17 @@ class Effects:
         most = min(most, self.left())
         if most <= 0:
             raise Failed(OVER_SHARE, cut=True)
-        lost, self.pilots = self.runs.lost, self.pilots + 1
+        before, self.pilots = self.runs.spent, self.pilots + 1
         try:
             tolerance, settings = max(PILOT_STEPS, self.accuracy), (*self.without(out), *steps)
-            run = self.runs.run(1 / self.cells, tolerance, settings=settings, most=most)
+            return self.runs.run(1 / self.cells, tolerance, settings=settings, most=most)
         finally:
-            self.spent += self.runs.lost - lost
-        self.spent += run.seconds
-        return run
+            self.spent += self.runs.spent - before
 
     def base_of(self, out):
         """The pilot that others are compared with: (what it is without, keys that prescribe its steps, run)."""
         most = MOST_ALONE if self.share == math.inf and len(out) < len(self.rows) else math.inf
         first = self.pilot(out, most=most)
-        self._quote(first)
         table, keys, start = HostRun(self.runs.folder / first.key.folder).ledger, [], 0.0
         for i, stage in enumerate(list_of(self.full, "stage"), 1):
             here = table["stage"] == i
@@ -235,29 +229,33 @@ class Effects:
         return out, tuple(keys), self.pilot(out, keys, MOST_TIMES * first.seconds + 1)
 
     def _quote(self, pilot):
-        """Processor time of the run, from a pilot's; Silent where that is short."""
-        self.quote = pilot.seconds * self._times(len(HostRun(self.runs.folder / pilot.key.folder).ledger["time"]))
-        if self.share != math.inf and self.quote < self.least_run:
-            raise Silent(f"the run is quoted at {self.quote:.2g} s of processor time, less than {self.least_run:g} s")
-
-    def _times(self, steps):
-        """What the run costs over what a pilot of so many steps does."""
-        more = max(1.0, (PILOT_STEPS / self.accuracy) ** STEPS)
-        for stage in self.scene.list_of("stage"):
-            default = "controlled" if "step_tolerance" in self.scene.list_of("scene")[0] else "given"
+        """Processor time that the run takes at least, from a pilot's: no fewer steps, each in proportion to the nodes;
+        Silent where that is short."""
+        self._check(["gravity"])
+        stage_of, steps = HostRun(self.runs.folder / pilot.key.folder).ledger["stage"], 0.0
+        default = "controlled" if "step_tolerance" in self.scene.list_of("scene")[0] else "given"
+        for i, stage in enumerate(self.scene.list_of("stage"), 1):
+            taken = np.sum(stage_of == i)
             if "dt" in stage and stage.get("steps", default).lower() == "given":
-                more = max(1.0, stage["duration"] / stage["dt"] / max(1, steps))
-        return more * self.cells**CELLS
+                grown = stage.get("dt_growth", 1.0) - 1
+                taken = stage["duration"] / stage["dt"]
+                taken = max(np.log1p(taken * grown) / np.log1p(grown) if grown > 0 else taken,
+                            stage["duration"] / stage.get("dt_max", math.inf))
+            steps += taken
+        self.quote = (pilot.seconds - self.start) * self.nodes * steps / len(stage_of)
+        if self.quote < self.least_run:
+            raise Silent(f"the run is quoted at {self.quote:.2g} s of processor time, less than {self.least_run:g} s")
 
     # Search -------------------------------------------------------------------------------------------------------
 
     def search(self) -> list[Effect]:
         """The table: what is on in the run. Silent where pilots may not be run; Failed where the scene's own fails."""
-        if self.share * self._times(USUAL_STEPS) < LEAST_PILOTS:
+        if self.share * self.nodes < LEAST_PILOTS:
             raise Silent(f"pilots would take more than {100 * self.share:g} % of the run, as few cells can be spared")
         inertia = [r for r in self.rows if r.setting]
         open_ones = [r for r in self.rows if not (r.by_hand or r.on or r.why)]
-        self._list_others()
+        if self.share != math.inf:
+            self._quote(self.pilot(open_ones))
         failed = {}
         # What the cheapest reading lacks goes again where the pilot with it fails or is too dear.
         for out in ([], [r for r in open_ones if r in inertia], open_ones):
@@ -274,6 +272,7 @@ class Effects:
             raise Failed(f"the pilot of the scene fails, so that nothing can be said of any effect: {failure.said}")
         for row in base[0]:
             row.why = f"cannot be put in: {next(iter(failed.values())).said}"
+        self._list_others()
         rows = [r for r in self.rows if not r.why]
         going = self._try([r for r in rows if r in inertia], base)
         if going and len(going) == len(inertia):  # without inertia pilots are cheap, and what is left is compared so

@@ -24,6 +24,7 @@ class Histories:
         run = HostRun(folder)
         self.values: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         points = run.histories
+        self.steps = max(1, len(points["time"]) - 1)
         self._take(points, [n for n in points if n.rsplit(".", 1)[-1] in FIELDS])
         if (run.folder / "contact.csv").exists():
             contact = run.table("contact")

@@ -8,6 +8,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -24,11 +25,13 @@ try:
 except ImportError as problem:
     raise ImportError("studies read scenes with f90nml: pip install 'mud-soil[study]'") from problem
 
+FILES = ("file", "library", "step_ends")  # keys that name files
 LOOSEST = 0.1  # step tolerance above which nothing differs: steps of flows grow as fast as they may
 # What the host takes where the scene says nothing, of a step tolerance A: a tenth, at most this (host/SCENE.md).
 NEWTON_LARGEST, STRESS_LARGEST, SHARE = 1e-4, 1e-3, 0.1
 DEFAULT_TOLERANCE = 1e-3  # of the steps that a stage chooses
 GIVEN_NEWTON = 1e-3  # the same of stages with given steps
+CUT = -signal.SIGPROF  # exit code of a run that has taken the processor time that it may
 WORDS_EVERY = 10.0  # a run that lasts longer says every so many seconds where it is [s]
 LOCALISED = 0.05  # share of the work that is done where the soil has lost ellipticity [-]
 
@@ -84,6 +87,7 @@ class Run:
     key: Key
     seconds: float  # processor time, of all threads
     histories: Histories = field(repr=False)
+    warnings: list[str] = field(default_factory=list)
     localised: str = ""  # what the run says of shear bands without a width of their own
 
 
@@ -135,14 +139,15 @@ class Scene:
         if key not in self.runs:
             told = self._found(key, most) or self._make(key, keep, most)
             if told["code"] != 0:
-                words = f"the run with {key} ends with exit code {told['code']}: {told['words']}"
-                cut = told["code"] == -signal.SIGXCPU
-                words = "it takes more processor time than it may" if cut else words
-                self.failed[key] = Failed(words, told["code"], "" if cut else told["words"], cut)
+                words = f"the run with {key} ends with exit code {told['code']}: {told['said']}"
+                if cut := told["code"] == CUT:
+                    words = told["said"] = "it takes more processor time than it may"
+                self.failed[key] = Failed(words, told["code"], told["said"], cut)
                 self.lost += told["seconds"]
                 raise self.failed[key]
             folder = self.folder / key.folder
-            self.runs[key] = Run(key, told["seconds"], Histories(folder), told["localised"])
+            warnings = warnings_of(folder)
+            self.runs[key] = Run(key, told["seconds"], Histories(folder), warnings, localised(folder, warnings))
         return self.runs[key]
 
     def words_of(self, key: Key) -> list[str]:
@@ -167,6 +172,11 @@ class Scene:
     def _given_steps(self, i, stage, tolerance):
         """Steps that the scene gives are those of the tolerance 1e-2; with another they change as its square root."""
         times = (tolerance / 1e-2) ** 0.5
+        if "step_ends" in stage:
+            raise InputError(
+                f"{self.path}: &stage {stage.get('name', i)} takes its steps from {stage['step_ends']}, so that no run "
+                "of a study has others; leave step_ends out"
+            )
         if abs(times - 1) < 1e-3 or "dt" not in stage:
             return []
         settings = [f"stage[{i}].dt={min(times * stage['dt'], stage['duration']):.6e}"]
@@ -180,12 +190,8 @@ class Scene:
         """Of the scene, the files that it names and the program."""
         hashed = hashlib.sha256(self.path.read_bytes())
         hashed.update(pathlib.Path(self.host).read_bytes())
-        for name in self.groups:
-            for group in self.list_of(name):
-                for key in ("file", "library"):
-                    named = self.path.parent / str(group.get(key, ""))
-                    if key in group and named.is_file():
-                        hashed.update(named.read_bytes())
+        for _, _, named in files_of(self.groups, self.path.parent):
+            hashed.update(named.read_bytes())
         return hashed.hexdigest()
 
     def _found(self, key, most):
@@ -196,10 +202,10 @@ class Scene:
             return None
         if told["origin"] != self._origin or told["words"] != self.words_of(key):
             return None
-        if told["code"] == -signal.SIGXCPU and most > told["most"]:
+        if told["code"] == CUT and most > told["most"]:
             return None
         self.say(f"   found: {key}, {told['seconds']:.3g} s")
-        return {**told, "words": told["said"]}
+        return told
 
     def _make(self, key, keep, most):
         folder = self.folder / key.folder
@@ -233,7 +239,7 @@ class Scene:
                 raise
         used = processor() - before
         self.used += used
-        if process.returncode == -signal.SIGXCPU and limit < most:
+        if process.returncode == CUT and limit < most:
             self.say(" stopped")
             raise BudgetUsedUp
         self.say(f" {used:.3g} s")
@@ -243,14 +249,13 @@ class Scene:
             "seconds": used,
             "code": process.returncode,
             "said": (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip()[-500:],
-            "localised": _localised(folder),
             "most": min(most, 1e9),
         }
-        if process.returncode >= 0 or process.returncode == -signal.SIGXCPU:  # one that was killed is repeated
+        if process.returncode >= 0 or process.returncode == CUT:  # one that was killed is repeated
             part = folder / "run.json.part"
             part.write_text(json.dumps(told, indent=1), encoding="utf-8")
             part.replace(folder / "run.json")
-        return {**told, "words": told["said"]}
+        return told
 
 
 def list_of(groups, name: str) -> list:
@@ -259,14 +264,20 @@ def list_of(groups, name: str) -> list:
     return list(found) if isinstance(found, list) else [found]
 
 
+def files_of(groups, folder) -> list[tuple]:
+    """Files that a scene names, seen from a folder: (group, key, path)."""
+    all_groups = [group for name in dict.fromkeys(groups) for group in list_of(groups, name)]
+    named = [(g, k, pathlib.Path(folder) / str(g[k])) for g in all_groups for k in FILES if k in g]
+    return [one for one in named if one[2].is_file()]
+
+
 def _limit(most, mask):
-    """Sets in a new process what ends a run that takes more processor time [s], in whole seconds, and its signals."""
+    """Sets in a new process what ends a run that takes more processor time [s], and its signals."""
 
     def begin():
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         if most != math.inf:
-            whole = max(1, math.ceil(most))
-            resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 5))
+            signal.setitimer(signal.ITIMER_PROF, most)
 
     return begin
 
@@ -277,11 +288,21 @@ def processor() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def _localised(folder):
-    """What a run says of localisation: a sentence, or the share of the shear work in its ledger. Empty: nothing."""
+def warnings_of(folder) -> list[str]:
+    """What a run warns of: of warnings that differ by stage, time and number the first, and how many more there are."""
+    kinds: dict[str, list[str]] = {}
     for line in (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").splitlines():
-        if "localis" in line.lower():
-            return line.strip().removeprefix("mud_host: warning: ").removesuffix(".")
+        if text := line.partition("warning: ")[2]:
+            kind = re.sub(r"[-+.\d]+(e[-+]?\d+)?", "0", re.sub(r"^stage \w+", "", text))
+            kinds.setdefault(kind, []).append(text.strip())
+    return [same[0] + f" (and {len(same) - 1} more)" * (len(same) > 1) for same in kinds.values()]
+
+
+def localised(folder, warnings) -> str:
+    """What a run says of localisation: a warning, or the share of the shear work in its ledger. Empty: nothing."""
+    for text in warnings:
+        if "localis" in text.lower():
+            return text.removesuffix(".")
     try:
         share = HostRun(folder).ledger.get("localised")
     except InputError:

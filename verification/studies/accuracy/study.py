@@ -60,7 +60,7 @@ def truth(scene, study, pair, seconds):
             run = fine.run(key.fineness, key.tolerance, key.newton, key.stress)
             return {n: distance(found, run.histories, n) for n in pair.errors}, f"F {fineness:g}, a {tolerance:.2g}"
         except (Failed, BudgetUsedUp):
-            continue
+            seconds -= fine.used
     return None, ""
 
 
