@@ -2,6 +2,8 @@
 """Whether a scene begins in balance: the stress of layers and slopes, and what is told of a start that is not."""
 import re
 
+import numpy as np
+
 from checking import check, root, work
 from host_program import start
 import tables  # noqa: E402 (checking knows its folder)
@@ -123,6 +125,70 @@ def test_a_slope_begins_in_balance_as_the_page_says():
     rows = moved["slope"][1]
     check("the stage finds the balance", abs(rows["crest.s_rr"][1] - rows["crest.s_rr"][0]) > 0.1, rows["crest.s_rr"])
     check("nothing moves afterwards", abs(rows["crest.u_r"][-1]) + abs(rows["crest.u_z"][-1]) < 1e-6, rows["crest.u_r"])
+
+
+def recipe(title):
+    """The blocks of a recipe that are groups of a scene."""
+    page = (root / "docs/how-to/README.md").read_text(encoding="utf-8")
+    section = re.search(rf"^## {re.escape(title)}$(.*?)^## ", page, re.MULTILINE | re.DOTALL)[1]
+    return re.findall(r"^```\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
+
+
+GROUND = """&mesh r = 0, 0.15, 1.2 r_cells = 2, 4 z = -1.2, 0 z_cells = 6 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+"""
+ELASTIC = """&scene name = 'ground' gravity = 9.81 /
+&elastic name = 'e' young = 3e4 poisson = 0.3 /
+&region material = 'e' void_ratio = 0.6 rho_s = 2.65 /
+&initial stress = 'geostatic' surface = 0 /
+"""
+
+
+def test_recipes_of_pulses_and_machines_run_as_they_stand():
+    given, falling = recipe("Drop something: a half sine")
+    drops = ELASTIC + GROUND + "&fix group = 'right' field = 'u_r' /\n" + given
+    moved = {}
+    # The mass takes the place of the force.
+    mass = drops.replace(" force = -7 history = 'fall'", "").replace(given.splitlines()[0] + "\n", "") + falling
+    for name, text in (("half_sine", drops), ("falling_mass", mass)):
+        done = start(name, text)
+        check(f"{name} runs", done.returncode == 0 and not told(done), done.stderr)
+        rows = tables.columns(work / name / "contact.csv")
+        moved[name] = [-rows["plate.u_z"][(rows["time"] > t) & (rows["time"] < t + 0.03)].min() for t in (0, 0.06)]
+    # pi/2 (1 - nu^2) sigma r/E of a rigid plate under 7 kN: 0.71 mm; of 1.2 m a little less.
+    check("the plate settles as much in both drops", all(4e-4 < x < 9e-4 for x in moved["half_sine"]), moved)
+    # Waves that the sides throw back are still there.
+    check("the mass that falls does as much, once", 4e-4 < moved["falling_mass"][0] < 9e-4
+          and abs(moved["falling_mass"][1]) < 0.5*moved["falling_mass"][0], moved)
+    machine, = recipe("Run a machine on its foundation")
+    sides = "&fix group = 'right' field = 'u_r' stages = 'rest' /\n"
+    done = start("machine", ELASTIC + GROUND + sides + machine, "--set", "stage[2].duration=0.08")
+    check("the machine runs", done.returncode == 0 and not told(done), done.stderr)
+    swing = tables.columns(work / "machine/contact.csv")["block.u_z"]
+    check("its block swings", 1e-5 < np.ptp(swing) < 1e-2, np.ptp(swing))
+
+
+def test_the_recipe_of_a_water_table_is_at_rest():
+    water, = recipe("Begin with a water table")
+    text = water + GROUND.replace("-1.2, 0", "-4, 0") + f"""&mud name = 'sand' file = '{root}/drivers/materials/toyoura.nml' /
+&region material = 'sand' void_ratio = 0.75 rho_s = 2.65 retention = 'material' permeability = 'k' /
+&permeability name = 'k' intrinsic = 1e-11 /
+&fix group = 'right' field = 'u_r' /
+&stage name = 'wait' analysis = 'quasi_static' duration = 3600 /
+&point name = 'low' r = 0 z = -3 /
+&point name = 'high' r = 0 z = -1 /
+"""
+    done = start("table", text)
+    check("it runs", done.returncode == 0, done.stderr)
+    rows = tables.columns(work / "table/histories.csv")
+    # 1 m of water below the table, and above it the suction of as much: 9.81 kPa.
+    for name, p_w in (("low", 9.81), ("high", -9.81)):
+        check(f"p_w {name}", np.all(abs(rows[f"{name}.p_w"] - p_w) < 0.02), rows[f"{name}.p_w"][[0, -1]])
+        # Where the soil is saturated a negative suction has no effect, and nothing holds it exactly.
+        near = 0.05 if name == "low" else 0.02
+        check(f"p_c {name}", np.all(abs(rows[f"{name}.p_c"] + p_w) < near), rows[f"{name}.p_c"][[0, -1]])
+        check(f"{name} does not move", np.all(abs(rows[f"{name}.u_z"]) < 1e-6), rows[f"{name}.u_z"][-1])
 
 
 WET = """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 10 /

@@ -27,7 +27,10 @@ class Drop:
     at: float  # when
     velocity: float  # largest
     settlement: float  # left at its end
+    force: float  # largest [kN]
     modulus: float  # by the formula of the device [kPa]
+    lift: float  # largest height above the place before the drop
+    ringing: float  # largest velocity in the last tenth of its interval, over the largest of all [-]
 
     @property
     def rebound(self) -> float:
@@ -40,11 +43,11 @@ class Answers:
 
     drops: list[Drop]
     influence: float  # depth at which the ground moves by a tenth of the plate's deflection, last drop [m]
-    tension: float  # largest pull between plate and ground, which a plate that lies loose would not have [kPa]
+    tension: float  # largest pull of a tied plate at the ground, which a loose one would not have [kPa]
     saturation: float  # of the ground below the plate, before the drops [-]; nan: no water
     void_ratio: float  # there
     suction: float  # there [kPa]
-    history: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  # columns of histories.csv
+    history: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  # columns of histories.csv, ascending times
 
     @property
     def deflection(self) -> float:
@@ -65,8 +68,9 @@ class Answers:
     def numbers(self) -> dict[str, float]:
         """Every answer that has an error, by its name."""
         told = {"modulus": self.modulus, "deflection": self.deflection, "influence": self.influence}
+        told["settlement"] = sum(drop.settlement for drop in self.drops)
         for drop in self.drops:
-            for name in ("deflection", "modulus", "rebound", "settlement"):
+            for name in ("deflection", "modulus", "force", "rebound", "settlement"):
                 told[f"{drop.name}.{name}"] = getattr(drop, name)
         return told
 
@@ -76,21 +80,26 @@ def answers_of(test: Test, folder: str | pathlib.Path) -> Answers:
     run = HostRun(folder)
     plate, points, device = run.table("contact"), run.histories, test.device
     time, moved, speed = plate["time"], -plate["plate.u_z"], -plate["plate.v_z"]
+    force = _force(test, plate)
     drops = []
     for i, (name, start) in enumerate(zip(test.drops, test.starts)):
         within = _within(time, start, start + test.interval)
-        t, s = time[within] - start, moved[within]
-        before, _ = s[0], s[-1]
-        peak, at = _peak(t, s - before)
+        t, s, v = time[within] - start, moved[within] - moved[within][0], speed[within]
+        peak, at = _peak(t, s)
+        load = _peak(t, force[within])[0] if device.buffer else device.peak
+        late = np.abs(v[t > 0.9 * test.interval])
         drops.append(
             Drop(
                 name,
                 i >= test.seating,
                 peak,
                 at,
-                float(speed[within].max()),
-                float(s[-1] - before),
-                device.modulus(peak),
+                float(v.max()),
+                float(s[-1]),
+                load,
+                device.modulus(peak, load),
+                float(max(0.0, -s.min())),
+                float(late.max() / v.max()),
             )
         )
     start = test.starts[-1]
@@ -101,33 +110,43 @@ def answers_of(test: Test, folder: str | pathlib.Path) -> Answers:
         u = -points[f"{point_of(depth)}.u_z"][within]
         shares.append(float((u - u[0]).max()) / drops[-1].deflection)
     # What the ground gives back to the plate: its inertia, weight and the force of the drop.
-    since = np.full_like(time, -1.0)
-    for begin in test.starts:
-        since = np.where(time >= begin, time - begin, since)
-    force = device.force(since)
     reaction = device.mass * (plate["plate.a_z"] + G) + force
     seen = time >= test.starts[0]
-    area = math.pi * device.radius**2
     first = point_of(test.depths[0])
     row = int(np.argmax(points["time"] >= test.starts[0] - 1e-9))
-    history = {
-        "time": points["time"],
-        "force": np.interp(points["time"], time, force),
-        "deflection": np.interp(points["time"], time, moved),
-    }
+    # Where a stage ends, its last row counts. The table of contacts lacks the row of the beginning.
+    last, own = (np.r_[x[1:] > x[:-1], True] for x in (points["time"], time))
+    history = {"time": points["time"][last]}
+    for name, values in (("force", force), ("deflection", moved - moved[seen][0])):
+        history[name] = np.interp(history["time"], time[own], values[own])
     if test.wet:
         for depth in test.depths[:4]:
             for p in ("p_w", "p_c"):
-                history[f"{p}_{point_of(depth)}"] = points[f"{point_of(depth)}.{p}"]
+                history[f"{p}_{point_of(depth)}"] = points[f"{point_of(depth)}.{p}"][last]
     return Answers(
         drops,
         _depth_of(deepest, shares),
-        float(max(0.0, -reaction[seen].min() / area)),
+        float(max(0.0, -reaction[seen].min() / device.area)) if test.tied else 0.0,
         float(points[f"{first}.S_w"][row]) if test.wet else math.nan,
         float(points[f"{first}.e"][row]),
         float(points[f"{first}.p_c"][row]) if test.wet else math.nan,
         history,
     )
+
+
+def _force(test, plate):
+    """On the plate, downwards, at its times [kN]: the given one, or that of the buffers."""
+    time, device, force = plate["time"], test.device, np.zeros_like(plate["time"])
+    for name, start in zip(test.drops, test.starts):
+        within = _within(time, start - test.lead, start + test.interval)
+        if device.buffer:
+            mass = f"mass{name[4:]}"
+            short = plate["plate.u_z"] - plate[f"{mass}.u_z"] - device.fall
+            push = device.buffer * short + device.damping * (plate["plate.v_z"] - plate[f"{mass}.v_z"])
+            force[within] = np.where(short > 0, np.maximum(0.0, push), 0.0)[within]
+        else:
+            force[within] = device.force(time[within] - start)
+    return force
 
 
 def _within(time, start, end):

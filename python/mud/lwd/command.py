@@ -12,13 +12,16 @@ import sys
 from ..errors import InputError
 from ..study.runs import Failed
 from .chart import INTERRUPTED, Place, run_grid, write_chart
-from .device import DEVICES, device_of
+from .device import DEVICES, device_of, record_of
 from .ground import Layer, Test
 from .measure import FINENESS, TOLERANCE, measure, write_tables
 from .page import write_page
 
 EXIT_INPUT, EXIT_FAILED = 2, 3
 CODES = "exit codes: 0 done; 2 the input is refused; 3 a run fails; 130 interrupted (the same command goes on)"
+# Options with a value that all tests of a chart have.
+SHARED = ("peak", "pulse", "force", "buffer", "buffer_damping", "fall_mass", "fall", "radius", "plate_mass", "shape")
+SHARED += ("poisson", "permeability", "k0", "grains", "width", "depth", "interval", "fineness", "step_tolerance")
 FORMAT = "CSV, first line time,force,deflection [ms, kN, mm]"
 
 
@@ -59,16 +62,24 @@ def _common(one):
         "--material", required=True, help="name in the library, FILE.nml, or elastic:YOUNG[:POISSON] [kPa]"
     )
     one.add_argument(
-        "--device", default="zorn", choices=[*DEVICES], help="default zorn: 7.07 kN in 17 ms, 300 mm, 22.5/s"
+        "--device",
+        default="zorn",
+        choices=[*DEVICES],
+        help="default zorn: 7.07 kN in 17 ms, 300 mm, 15 kg, 22.5/s; prima needs its force and mass from you",
     )
     own = one.add_argument_group("values of your own device")
-    own.add_argument("--peak", type=float, metavar="KN", help="largest force")
+    own.add_argument("--peak", type=float, metavar="KN", help="largest force of the half sine")
     own.add_argument("--pulse", type=float, metavar="MS", help="duration of the half sine")
+    own.add_argument("--force", metavar="FILE", help=f"measured force in place of the half sine: {FORMAT}")
+    own.add_argument("--buffer", type=float, metavar="KN_M", help="stiffness: the mass falls on it and makes the pulse")
+    own.add_argument("--buffer-damping", type=float, metavar="KN_S_M", help="of a dashpot beside it; default 0")
+    own.add_argument("--fall-mass", type=float, metavar="KG", help="of the mass that falls")
+    own.add_argument("--fall", type=float, metavar="M", help="its height of fall")
     own.add_argument("--radius", type=float, metavar="MM", help="of the plate")
     own.add_argument("--plate-mass", type=float, metavar="KG", help="what rests on the ground: plate and guide")
+    own.add_argument("--tied", action="store_true", help="joins the plate to the ground: it cannot leave it")
     own.add_argument("--shape", type=float, metavar="F", help="of E = f (1 - nu^2) sigma r/s: 2 flexible, pi/2 rigid")
     own.add_argument("--poisson", type=float, metavar="NU", help="of this formula")
-    own.add_argument("--force", metavar="FILE", help=f"measured force in place of the half sine: {FORMAT}")
     more = one.add_argument_group("ground and accuracy")
     more.add_argument("--permeability", type=float, metavar="M2", help=f"intrinsic; default {Test.permeability:g}")
     more.add_argument(
@@ -107,6 +118,10 @@ def test_of(args, layers=(), **water) -> Test:
         pulse=scaled(args.pulse, 1e-3),
         radius=scaled(args.radius, 1e-3),
         mass=scaled(args.plate_mass, 1e-3),
+        fall_mass=scaled(args.fall_mass, 1e-3),
+        fall=args.fall,
+        buffer=args.buffer,
+        damping=args.buffer_damping,
         shape=args.shape,
         poisson=args.poisson,
     )
@@ -120,7 +135,7 @@ def test_of(args, layers=(), **water) -> Test:
     }
     if args.drops:
         given |= {"seating": args.drops[0], "measured": args.drops[1]}
-    return Test(device, tuple(layers), **{k: v for k, v in (given | water).items() if v is not None})
+    return Test(device, tuple(layers), tied=args.tied, **{k: v for k, v in (given | water).items() if v is not None})
 
 
 def test(args) -> int:
@@ -134,6 +149,8 @@ def test(args) -> int:
                 f"--layer {thickness} {material} {void_ratio}: thickness and void ratio are numbers"
             ) from problem
     layers.append(Layer(args.material, args.void_ratio))
+    if args.measured:
+        record_of(args.measured)  # what is wrong with it is told before the runs
     what = test_of(
         args,
         layers,
@@ -161,36 +178,23 @@ def test(args) -> int:
 
 def chart(args) -> int:
     """The command `chart`."""
-    test_of(args, [Layer(args.material, args.void_ratios[0])], suction=args.suctions[0])  # what is wrong is told once
+    ratios, suctions = ([*dict.fromkeys(given)] for given in (args.void_ratios, args.suctions))
+    for e in ratios:  # what is wrong is told once, before anything runs
+        for suction in suctions:
+            test_of(args, [Layer(args.material, e)], suction=suction)
+    if args.processes < 1:
+        raise InputError(f"--processes is {args.processes}; at least one test runs at a time")
     folder = args.output or pathlib.Path("lwd_chart")
     folder.mkdir(parents=True, exist_ok=True)
-    shared = ["--material", args.material, "--device", args.device]
-    for option in (
-        "peak",
-        "pulse",
-        "radius",
-        "plate_mass",
-        "shape",
-        "poisson",
-        "force",
-        "permeability",
-        "k0",
-        "grains",
-    ):
-        if getattr(args, option) is not None:
-            shared += [f"--{option.replace('_', '-')}", str(getattr(args, option))]
-    for option in ("width", "depth", "interval", "fineness", "step_tolerance"):
+    shared = ["--material", args.material, "--device", args.device, *["--tied"] * args.tied]
+    for option in SHARED:
         if getattr(args, option) is not None:
             shared += [f"--{option.replace('_', '-')}", str(getattr(args, option))]
     if args.drops:
         shared += ["--drops", *map(str, args.drops)]
     if args.host:
         shared += ["--host", args.host]
-    places = [
-        Place(e, s, folder / f"e{e:g}_s{s:g}")
-        for e in dict.fromkeys(args.void_ratios)
-        for s in dict.fromkeys(args.suctions)
-    ]
+    places = [Place(e, s, folder / f"e{e:g}_s{s:g}") for e in ratios for s in suctions]
     run_grid(
         places, shared, args.processes, (lambda words: None) if args.quiet else lambda words: print(words, flush=True)
     )

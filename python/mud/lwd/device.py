@@ -19,34 +19,52 @@ FLEXIBLE, RIGID = 2.0, math.pi / 2  # shape factors of a plate under uniform str
 
 @dataclass(frozen=True)
 class Device:
-    """What falls on what. Forces in kN, masses in Mg, lengths in m, times in s."""
+    """What falls on what. Forces in kN, masses in Mg, lengths in m, times in s. What is 0 is not known."""
 
     name: str
     standard: str  # where the test is described
-    peak: float  # of the force [kN]
+    peak: float  # of the half sine [kN]; without a load cell that of the formula
     pulse: float  # duration of the half sine [s]
     radius: float  # of the plate [m]
     mass: float  # that rests on the ground: plate and guide [Mg]
     shape: float  # f of the formula [-]
     poisson: float  # nu of the formula [-]
+    cell: bool  # a load cell measures the force of the formula
+    fall_mass: float  # that falls [Mg]
+    fall: float  # its height [m]
+    buffer: float = 0.0  # stiffness of the spring that it meets [kN/m]; 0: the pulse is given
+    damping: float = 0.0  # of a dashpot beside the spring [kN s/m]
     record: str = ""  # file with the measured force, in place of the half sine
     words: str = ""
 
     @property
-    def stress(self) -> float:
-        """Largest mean stress under the plate [kPa]."""
-        return self.peak / (math.pi * self.radius**2)
+    def area(self) -> float:
+        return math.pi * self.radius**2
 
-    def modulus(self, deflection: float) -> float:
-        """f (1 - nu^2) sigma r/s [kPa], of a deflection [m]."""
-        return self.shape * (1 - self.poisson**2) * self.stress * self.radius / deflection
+    def modulus(self, deflection: float, peak: float | None = None) -> float:
+        """f (1 - nu^2) sigma r/s [kPa], of a deflection [m] and, where a load cell measures it, the peak force [kN]."""
+        force = peak if self.cell and peak is not None else self.peak
+        return self.shape * (1 - self.poisson**2) * force / self.area * self.radius / deflection
 
     def force(self, time: np.ndarray) -> np.ndarray:
-        """Force on the plate, downwards, at times since the start of a drop [kN]."""
+        """Force that is given, downwards, at times since the start of a drop [kN]."""
         if self.record:
             t, f = force_of(self.record)
             return np.interp(time, t, f)
         return np.where((time > 0) & (time < self.pulse), self.peak * np.sin(np.pi * time / self.pulse), 0.0)
+
+    @property
+    def flight(self) -> float:
+        """Time of the fall [s]; 0 where the pulse is given."""
+        return math.sqrt(2 * self.fall / G) if self.buffer else 0.0
+
+    def on_rigid_base(self) -> tuple[float, float]:
+        """Peak force [kN] and duration [s] of the pulse of mass and spring, of a plate that does not move."""
+        sag, omega = self.fall_mass * G / self.buffer, math.sqrt(self.buffer / self.fall_mass)
+        speed = G * self.flight
+        return self.buffer * (sag + math.hypot(sag, speed / omega)), (
+            math.pi + 2 * math.atan(sag * omega / speed)
+        ) / omega
 
 
 # E_vd = 1.5 r sigma/s with sigma = 0.1 MN/m2 and r = 150 mm: 22.5/s, s in mm. 1.5 is f (1 - nu^2) with f = 2 and nu =
@@ -62,32 +80,61 @@ DEVICES = {
         0.015,
         FLEXIBLE,
         0.5,
+        False,
+        0.01,
+        0.72,
         words="10 kg from 0.72 m on steel springs, plate of 300 mm, deflection by an accelerometer on the plate",
     ),
     "prima": Device(
         "prima",
         "ASTM E2583",
-        NOMINAL,
-        0.018,
+        0.0,
+        0.0,
         0.15,
-        0.015,
+        0.0,
         RIGID,
         0.35,
-        words="10 kg on rubber buffers, load cell, plate of 300 mm, deflection by a geophone; peak and pulse are yours",
+        True,
+        0.0,
+        0.0,
+        words="a mass on rubber buffers, load cell, plate of 300 mm, deflection by a geophone",
     ),
 }
+OPTIONS = {"peak": "--peak", "pulse": "--pulse", "radius": "--radius", "mass": "--plate-mass", "shape": "--shape",
+           "fall_mass": "--fall-mass", "fall": "--fall", "buffer": "--buffer", "damping": "--buffer-damping"}
 
 
 def device_of(name: str, record: str | os.PathLike | None = None, **values: float | None) -> Device:
-    """A device with values of one's own; those that are None stay. Raises InputError for values that none has."""
+    """A device with values of one's own; those that are None stay. Raises InputError for values that none has, and for
+    those that are missing."""
     if name not in DEVICES:
         raise InputError(f"there is no device {name}; there are {', '.join(DEVICES)}")
-    device = replace(DEVICES[name], **{key: value for key, value in values.items() if value is not None})
-    for key in ("peak", "pulse", "radius", "mass", "shape"):
-        if not getattr(device, key) > 0:
-            raise InputError(f"{key} of the device is {getattr(device, key):g}; it is above 0")
+    given = {key: value for key, value in values.items() if value is not None}
+    for key, value in given.items():
+        if key != "poisson" and not (math.isfinite(value) and (value > 0 or (key == "damping" and value == 0))):
+            raise InputError(f"{key} of the device is {value:g} ({OPTIONS[key]}); it is above 0")
+    device = replace(DEVICES[name], **given)
     if not 0 <= device.poisson <= 0.5:
         raise InputError(f"Poisson's ratio of the formula is {device.poisson:g}; it lies from 0 to 0.5")
+    falls = [key for key in ("fall_mass", "fall", "buffer", "damping") if key in given]
+    pulse = [key for key in ("pulse", *([] if not device.cell else ["peak"])) if key in given]
+    if falls and (pulse or record is not None):
+        other = "--force" if record is not None else OPTIONS[pulse[0]]
+        raise InputError(
+            f"{OPTIONS[falls[0]]} lets a mass fall on a buffer, which makes the pulse, and {other} gives the pulse: "
+            "leave one of the two out"
+        )
+    if falls and not device.buffer:
+        raise InputError(f"{OPTIONS[falls[0]]} needs the stiffness of the buffer in kN/m: --buffer")
+    needed = ("fall_mass", "fall") if device.buffer else () if record is not None else ("peak", "pulse")
+    missing = [OPTIONS[key] for key in (*needed, "mass") if not getattr(device, key)]
+    if missing:
+        raise InputError(
+            f"the device {name} needs {', '.join(missing)}: its force depends on the height of fall and the buffers that "
+            "are set, and its load cell shows it. Give --peak and --pulse, or --force FILE with the measured force, or "
+            "--fall-mass, --fall and --buffer for a mass that falls on a spring; and --plate-mass, what rests on the "
+            "ground"
+        )
     if record is None:
         return device
     t, f = force_of(record)

@@ -15,6 +15,7 @@ SEATING, MEASURED = 3, 3  # drops of the standards
 DEPTHS = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)  # of points on the axis, over the plate's radius
 CELL, GROWTH = 0.3, 0.45  # cell at the plate over its radius; growth of cells over the distance from it [-]
 FRAMES = 1e-3  # fields of the last drop are written so often [s]
+BEFORE = 5e-4  # a mass that falls is this near to its buffer when the drop begins [s]
 
 
 @dataclass(frozen=True)
@@ -56,31 +57,51 @@ class Test:
     rho_s: float = 2.65  # of the grains [Mg/m3]
     seating: int = SEATING
     measured: int = MEASURED
-    interval: float = 0.06  # from drop to drop [s]
+    interval: float = 0.1  # from drop to drop [s]
     width: float = 2.4  # of the ground that is computed [m]
     depth: float = 2.4  # down to a base that does not move [m]
+    tied: bool = False  # the plate is joined to the ground; else it presses only
     absorbing: bool = True  # sides that let waves out
     fixed: bool = field(default=False, repr=False)  # sides held instead: to show what they change
 
     def __post_init__(self):
-        wet = any(layer.elastic is None for layer in self.layers)
+        device, wet = self.device, self.wet
         if wet and (self.suction is None) == (self.water_table is None):
             raise InputError("give the suction [kPa] or the depth of the water table [m]: one of the two")
-        if not self.interval > 1.5 * self.device.pulse:
+        for what, value, least, words in (
+            ("suction", self.suction, 0, "kPa; ground below water has --water-table"),
+            ("water table", self.water_table, 0, "m below the surface; a plate stands on ground, not in water"),
+            ("rain", self.rain, 0, "mm/h"),
+            ("duration of the rain", self.rain_hours, 0, "h"),
+            ("K_0", self.k_0, 0, ""),
+        ):
+            if value is not None and not least <= value < math.inf:
+                raise InputError(f"the {what} is {value:g}; it is {least} or more {words}".rstrip())
+        for what, value in (
+            ("permeability", self.permeability),
+            ("density of the grains", self.rho_s),
+            *(("void ratio", layer.void_ratio) for layer in self.layers),
+            *(("thickness of a layer", layer.thickness) for layer in self.layers[:-1]),
+        ):
+            if not 0 < value < math.inf:
+                raise InputError(f"the {what} is {value:g}; it is above 0")
+        # A recorded or given pulse; of a mass that falls that on a rigid base, the shortest.
+        pulse = device.on_rigid_base()[1] if device.buffer else device.pulse
+        if not 1.5 * pulse < self.interval < math.inf:
             raise InputError(
-                f"drops follow each other after {self.interval:g} s, and a pulse lasts {self.device.pulse:g} s: "
+                f"drops follow each other after {self.interval:g} s, and a pulse lasts {pulse:.3g} s: "
                 "at least one and a half times as long"
             )
-        if min(self.width, self.depth) < 6 * self.device.radius:
+        if not 6 * device.radius <= min(self.width, self.depth) < math.inf:
             raise InputError("width and depth of the ground are at least six radii of the plate")
         if sum(layer.thickness for layer in self.layers[:-1]) >= self.depth:
             raise InputError(f"the layers reach below the base, at {self.depth:g} m: give a larger depth")
-        if self.rain > 0 and not self.rain_hours > 0:
-            raise InputError("rain needs its duration in hours")
+        if (self.rain > 0) != (self.rain_hours > 0):
+            raise InputError("rain needs its rate in mm/h and its duration in hours: --rain and --rain-hours")
         if self.rain > 0 and self.layers[0].elastic:
             raise InputError("rain falls on soil: the upper layer is elastic, and lets no water in")
         if self.measured < 1 or self.seating < 0:
-            raise InputError("at least one drop is measured")
+            raise InputError("at least one drop is measured, and the number of seating drops is 0 or more")
 
     @property
     def drops(self) -> list[str]:
@@ -94,8 +115,13 @@ class Test:
     @property
     def starts(self) -> list[float]:
         """Times of the run at which drops begin [s]."""
-        first = 2.0 + 3600 * self.rain_hours * (self.rain > 0)
-        return [first + i * self.interval for i in range(len(self.drops))]
+        first = 2.0 + 3600 * self.rain_hours + self.lead
+        return [first + i * (self.lead + self.interval) for i in range(len(self.drops))]
+
+    @property
+    def lead(self) -> float:
+        """Time of a stage before each drop, in which a mass falls [s]."""
+        return max(0.0, self.device.flight - BEFORE)
 
     @property
     def depths(self) -> list[float]:
@@ -121,14 +147,13 @@ def write_record(device: Device, path: pathlib.Path) -> None:
     path.write_text("".join(f"{a:.9g} {b:.9g}\n" for a, b in zip(t, f / f.max())), encoding="utf-8")
 
 
-def scene_of(test: Test, record: str = "force.txt") -> str:
-    """The text of the scene; a recorded force stands in the file `record` beside it."""
-    device, a = test.device, test.device.radius
-    drops = ", ".join(f"'{name}'" for name in test.drops)
+def scene_of(test: Test) -> str:
+    """The text of the scene; a recorded force stands in force.txt beside it."""
+    device = test.device
+    moving = [x for name in test.drops for x in ([f"fall{name[4:]}"] * bool(device.buffer) + [name])]
+    drops = quoted(moving)
     wet, rain = test.wet, test.rain > 0 and test.wet
     calm = ["rest", *(["rain"] if rain else []), "seat"]
-    calm_words = ", ".join(f"'{name}'" for name in calm)
-    sigma_plate = device.mass * G / (math.pi * a**2)
     lines = [
         "! A light falling weight deflectometer on unsaturated soil, written by mud_lwd. Units m, s, kPa, Mg.",
         f"&scene name = 'lwd' fields = '{'u-p_w-p_c' if wet else 'u'}' gravity = {G}"
@@ -151,31 +176,73 @@ def scene_of(test: Test, record: str = "force.txt") -> str:
             lines.append(f"&fix group = 'top_2' field = 'p_a' stages = {drops} /")
     else:
         lines.append(f"&initial stress = 'geostatic' surface = 0 k_0 = {test.k_0:g} /")
+    lines.append("&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 zero_displacements = 'yes' /")
     if rain:
         lines += [
             f"&stage name = 'rain' analysis = 'quasi_static' duration = {3600 * test.rain_hours:g} /",
             f"&load group = 'top' kind = 'rain' value = {test.rain / 3.6e6:g} stages = 'rain' /",
         ]
-    lines.insert(
-        lines.index(next((x for x in lines if "name = 'rain'" in x), lines[-1])),
-        "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 zero_displacements = 'yes' /",
-    )
-    shape = f"file = '{record}'" if device.record else f"kind = 'half_sine' period = {device.pulse:g}"
+    lines.append("&stage name = 'seat' analysis = 'static' duration = 1 /")
+    for name in test.drops:
+        if device.buffer:
+            lines.append(f"&stage name = 'fall{name[4:]}' analysis = 'dynamic' duration = {test.lead:.9g} /")
+        often = f" output_dt = {FRAMES:g}" if name == test.drops[-1] else ""
+        lines.append(f"&stage name = '{name}' analysis = 'dynamic' duration = {test.interval:g}{often} /")
     lines += [
-        "&stage name = 'seat' analysis = 'static' duration = 1 /",
-        *(f"&stage name = '{name}' analysis = 'dynamic' duration = {test.interval:g} /" for name in test.drops[:-1]),
-        f"&stage name = '{test.drops[-1]}' analysis = 'dynamic' duration = {test.interval:g} output_dt = {FRAMES:g} /",
-        f"&history name = 'fall' {shape} stages = {drops} /",
-        f"&plate name = 'plate' group = 'top_1' mass = {device.mass:g} force = {-device.peak:.9g} history = 'fall' /",
-        f"&load group = 'top_1' kind = 'pressure' value = {sigma_plate:.9g} stages = 'seat', {drops} /",
+        *plate_of(test, ["seat", *moving], calm[:-1]),
+        *masses_of(test, calm),
         "&fix group = 'left' field = 'u_r' /",
         "&fix group = 'bottom' field = 'u_z' /",
-        f"&fix group = 'right' field = 'u_r' stages = {calm_words}{', ' + drops if test.fixed else ''} /",
+        f"&fix group = 'right' field = 'u_r' stages = {quoted(calm + moving * test.fixed)} /",
     ]
     if test.absorbing and not test.fixed:
         lines.append(f"&absorbing group = 'right' stages = {drops} /")
     lines += [f"&point name = '{point_of(d)}' r = 0 z = {-d:g} /" for d in test.depths]
     return "\n".join(lines) + "\n"
+
+
+def quoted(names) -> str:
+    return ", ".join(f"'{name}'" for name in names)
+
+
+def plate_of(test: Test, stands: list[str], before: list[str]) -> list[str]:
+    """The plate and the force on it. It presses on the ground in the stages in which it `stands`, and leaves it where it
+    is thrown up, unless it is tied."""
+    device, a = test.device, test.device.radius
+    lines, thrown = [], ""
+    if not device.buffer:
+        shape = "file = 'force.txt'" if device.record else f"kind = 'half_sine' period = {device.pulse:g}"
+        lines.append(f"&history name = 'fall' {shape} stages = {quoted(test.drops)} /")
+        thrown = f" force = {-device.peak:.9g} history = 'fall'"
+    if test.tied:
+        weight = device.mass * G / device.area
+        return [
+            *lines,
+            f"&plate name = 'plate' group = 'top_1' mass = {device.mass:g}{thrown} /",
+            f"&load group = 'top_1' kind = 'pressure' value = {weight:.9g} stages = {quoted(stands)} /",
+        ]
+    return [
+        *lines,
+        f"&plate name = 'plate' r = 0, {a:g} z = 0 mass = {device.mass:g} weight = 'yes'{thrown} /",
+        f"&contact name = 'face' slave = 'top_1' master = 'plate' stages = {quoted(stands)} /",
+        f"&fix group = 'plate' field = 'u_z' hold = 'yes' stages = {quoted(before)} /",
+    ]
+
+
+def masses_of(test: Test, calm: list[str]) -> list[str]:
+    """A mass for each drop: it is held, falls on the buffer, is thrown up, and is caught when the drop is over."""
+    lines, device = [], test.device
+    for name in test.drops if device.buffer else ():
+        mass, falls = f"mass{name[4:]}", [f"fall{name[4:]}", name]
+        others = [x for other in test.drops if other != name for x in (f"fall{other[4:]}", other)]
+        lines += [
+            f"&plate name = '{mass}' r = 0, {device.radius / 2:g} z = {2 + device.fall:g} mass = {device.fall_mass:g}"
+            " weight = 'yes' /",
+            f"&fix group = '{mass}' field = 'u_z' hold = 'yes' stages = {quoted(calm + others)} /",
+            f"&buffer upper = '{mass}' lower = 'plate' stiffness = {device.buffer:g} damping = {device.damping:g}"
+            f" clearance = {device.fall:g} stages = {quoted(falls)} /",
+        ]
+    return lines
 
 
 def mesh_of(test: Test) -> list[str]:

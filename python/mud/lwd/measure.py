@@ -10,28 +10,38 @@ import pathlib
 import time
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..errors import InputError
 from ..study.accuracy import HALF_DECADE
-from ..study.runs import Scene
+from ..study.histories import between
+from ..study.runs import LOOSEST, Scene
 from .answers import Answers, answers_of
 from .ground import Test, scene_of, write_record
 
 FINENESS, TOLERANCE = 1.0, 0.03
 # Processor time of the four runs, over that of the last.
 SHARES = (0.15, 0.25, 0.25, 1.0)
-UNITS = {"modulus": ("MN/m2", 1e-3), "influence": ("m", 1.0)}
+UNITS = {"modulus": ("MN/m2", 1e-3), "influence": ("m", 1.0), "force": ("kN", 1.0)}
+RINGS = 0.1  # velocity at the end of a drop, over the largest, above which its settlement is not the last word [-]
 MILLIMETRES = ("mm", 1e3)
 
 
 @dataclass
 class Error:
-    """Of an answer, in its unit."""
+    """Of an answer, or of a history at its times, in its unit."""
 
-    mesh: float
-    steps: float
-    solve: float  # Newton's method and the integration of the stress
+    mesh: float | np.ndarray
+    steps: float | np.ndarray
+    solve: float | np.ndarray  # Newton's method and the integration of the stress
+
+    @classmethod
+    def of(cls, rough, coarse, tight, fine) -> Error:
+        """Of an answer of four runs."""
+        return cls(abs(fine - coarse) / 2, abs(coarse - rough), abs(tight - rough))
 
     @property
-    def total(self) -> float:
+    def total(self) -> float | np.ndarray:
         return self.mesh + self.steps + self.solve
 
 
@@ -42,6 +52,7 @@ class Measured:
     test: Test
     answers: Answers
     errors: dict[str, Error]
+    runs: tuple[Answers, ...]  # the four, the finest last
     warnings: list[str]
     folder: pathlib.Path  # of the finest run
     seconds: float  # processor time of all runs
@@ -53,9 +64,37 @@ class Measured:
         return f"{value:.4g} +- {error:.2g} {unit}"
 
 
+    def band(self, name: str, since: float) -> Error:
+        """Errors of what a history has changed since a time, at the times of the finest run."""
+        at = self.answers.history["time"]
+        if name == "force" and not self.test.device.buffer:  # it is the input
+            return Error(*np.zeros((3, len(at))))
+        changes = []
+        for run in self.runs:
+            time, values = run.history["time"], run.history[name]
+            changes.append(between(time, values, at) - between(time, values, np.array([since]))[0])
+        return Error.of(*changes)
+
+    def changes(self) -> list[tuple[str, float, Error, str]]:
+        """Of every history its name, largest change since the first drop, largest errors and unit."""
+        history, told, start = self.answers.history, [], self.test.starts[0]
+        seen = history["time"] >= start - 1e-9
+        for name in self.histories:
+            (unit, factor), band = unit_of(f"history.{name}"), self.band(name, start)
+            change = np.abs(history[name][seen] - history[name][seen][0]).max()
+            most = (float(factor * part[seen].max()) for part in (band.mesh, band.steps, band.solve))
+            told.append((name, float(factor * change), Error(*most), unit))
+        return told
+
+    @property
+    def histories(self) -> list[str]:
+        return [name for name in self.answers.history if name != "time"]
+
+
 def unit_of(name: str) -> tuple[str, float]:
     """Unit of an answer in tables, and the factor that leads to it."""
-    return UNITS.get(name.split(".")[-1], MILLIMETRES)
+    last = name.split(".")[-1]
+    return ("kPa", 1.0) if last.startswith("p_") else UNITS.get(last, MILLIMETRES)
 
 
 def measure(test: Test, folder: pathlib.Path, host="", quiet=False, fineness=FINENESS, tolerance=TOLERANCE) -> Measured:
@@ -64,6 +103,9 @@ def measure(test: Test, folder: pathlib.Path, host="", quiet=False, fineness=FIN
     mesh: half of what fineness and half of it differ by; steps: what the tolerance and root(10) times it differ by, on
     the coarser mesh; solve: what a tenth of the tolerances of Newton's method and of the stresses changes there.
     """
+    for option, value, most in (("--fineness", fineness, 8.0), ("--step-tolerance", tolerance, LOOSEST / HALF_DECADE)):
+        if not 1e-6 <= value <= most * (1 + 1e-9):
+            raise InputError(f"{option} is {value:g}; it is above 0 and at most {most:.3g}")
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "scene.nml"
     if test.device.record:
@@ -82,18 +124,11 @@ def measure(test: Test, folder: pathlib.Path, host="", quiet=False, fineness=FIN
             left = (time.monotonic() - began) / done * sum(SHARES[i + 1 :])
             if i < len(keys) - 1:
                 scene.say(f"   {i + 1} of {len(keys)} runs; about {left:.0f} s left")
-    rough, coarse, tight, fine = (answers_of(test, scene.folder / run.key.folder) for run in runs)
-    told = [a.numbers() for a in (rough, coarse, tight, fine)]
-    errors = {
-        name: Error(
-            abs(told[3][name] - told[1][name]) / 2,
-            abs(told[1][name] - told[0][name]),
-            abs(told[2][name] - told[0][name]),
-        )
-        for name in told[3]
-    }
+    found = tuple(answers_of(test, scene.folder / run.key.folder) for run in runs)
+    told = [answers.numbers() for answers in found]
+    errors = {name: Error.of(*(x[name] for x in told)) for name in told[3]}
     last = scene.folder / runs[-1].key.folder
-    return Measured(test, fine, errors, _warnings(test, fine, runs[-1]), last, scene.spent)
+    return Measured(test, found[-1], errors, found, _warnings(test, found[-1], runs[-1]), last, scene.spent)
 
 
 def _write(path, text):
@@ -106,11 +141,17 @@ def _warnings(test, answers, run):
     found = list(run.warnings)
     if run.localised and run.localised not in " ".join(found):
         found.append(f"{run.localised}: displacements there depend on the cells")
-    if answers.tension > 0.05 * test.device.stress:
+    if answers.tension > 0.05 * test.device.peak / test.device.area:
         found.append(
-            f"the plate pulls at the ground with {answers.tension:.2g} kPa on its way back, and its weight is "
-            f"{test.device.mass * 9.81 / (math.pi * test.device.radius**2):.2g} kPa: a plate that lies loose would "
-            "leave the ground there. The peak is before that; rebound and settlement are those of a plate that stays."
+            f"the tied plate pulls at the ground with {answers.tension:.2g} kPa on its way back, and its weight is "
+            f"{test.device.mass * 9.81 / test.device.area:.2g} kPa: one that lies loose leaves the ground there. Rebound "
+            "and settlement are those of a plate that stays; leave out --tied for one that does not."
+        )
+    last = answers.drops[-1]
+    if last.ringing > RINGS:
+        found.append(
+            f"at the end of the last drop the plate still moves by {100 * last.ringing:.2g} % of its largest velocity: "
+            f"settlements are not the last word; give a longer --interval than {1e3 * test.interval:g} ms"
         )
     return found
 
@@ -132,11 +173,16 @@ def write_tables(measured: Measured, folder: pathlib.Path) -> None:
                     *(f"{x * factor:.2g}" for x in (e.total, e.mesh, e.steps, e.solve)),
                 )
             )
+        for name, change, e, unit in measured.changes():
+            table.writerow(
+                (f"history.{name}", f"{change:.6g}", unit, *(f"{x:.2g}" for x in (e.total, e.mesh, e.steps, e.solve)))
+            )
     with open(folder / "drops.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(
-            ("drop", "kind", "deflection_mm", "error_mm", "modulus_MPa", "error_MPa", "peak_at_ms", "velocity_mm_s")
-            + ("s_over_v_ms", "rebound_mm", "settlement_mm")
+            ("drop", "kind", "deflection_mm", "deflection_error_mm", "modulus_MPa", "modulus_error_MPa", "peak_at_ms")
+            + ("velocity_mm_s", "s_over_v_ms", "rebound_mm", "rebound_error_mm", "settlement_mm", "settlement_error_mm")
+            + ("lift_mm", "force_kN", "force_error_kN")
         )
         for i, drop in enumerate(answers.drops):
             table.writerow(
@@ -151,7 +197,12 @@ def write_tables(measured: Measured, folder: pathlib.Path) -> None:
                     f"{1e3 * drop.velocity:.4g}",
                     f"{1e3 * drop.deflection / drop.velocity:.4g}",
                     f"{1e3 * drop.rebound:.4g}",
+                    f"{1e3 * errors[f'{drop.name}.rebound'].total:.2g}",
                     f"{1e3 * drop.settlement:.4g}",
+                    f"{1e3 * errors[f'{drop.name}.settlement'].total:.2g}",
+                    f"{1e3 * drop.lift:.4g}",
+                    f"{drop.force:.5g}",
+                    f"{errors[f'{drop.name}.force'].total:.2g}",
                 )
             )
     first = measured.test.starts[0]
@@ -159,16 +210,16 @@ def write_tables(measured: Measured, folder: pathlib.Path) -> None:
     seen = history["time"] >= first - 1e-9
     with open(folder / "histories.csv", "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        pressures = [name for name in history if name.startswith("p_")]
-        table.writerow(("time_ms", "force_kN", "deflection_mm", *(f"{name}_kPa" for name in pressures)))
-        start = history["deflection"][seen][0]
+        columns = []
+        for name in measured.histories:
+            (unit, factor), band = unit_of(f"history.{name}"), measured.band(name, first)
+            columns += [(f"{name}_{unit}", factor * history[name]), (f"{name}_error_{unit}", factor * band.total)]
+        table.writerow(("time_ms", *(name for name, _ in columns)))
         for i in seen.nonzero()[0]:
             table.writerow(
                 (
                     f"{1e3 * (history['time'][i] - first):.6g}",
-                    f"{history['force'][i]:.6g}",
-                    f"{1e3 * (history['deflection'][i] - start):.6g}",
-                    *(f"{history[name][i]:.6g}" for name in pressures),
+                    *(f"{values[i]:.{2 if 'error' in name else 6}g}" for name, values in columns),
                 )
             )
     told = {

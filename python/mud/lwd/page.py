@@ -48,8 +48,10 @@ def _sketch(axes, test: Test):
         top = low
     axes.fill_between([0, a], 0, 0.25 * a, color="0.3", lw=0)
     axes.annotate("", (0.5 * a, 0.3 * a), (0.5 * a, 1.9 * a), arrowprops={"arrowstyle": "-|>", "color": "k"})
-    pulse = "recorded force" if device.record else f"half sine of {1e3 * device.pulse:g} ms"
-    axes.text(0.75 * a, 1.1 * a, f"{device.name}: {device.peak:.3g} kN\n{pulse}", fontsize=8, va="center")
+    pulse = f"{device.peak:.3g} kN\n" + ("recorded" if device.record else f"half sine of {1e3 * device.pulse:g} ms")
+    if device.buffer:
+        pulse = f"{1e3 * device.fall_mass:g} kg from {device.fall:g} m\non {device.buffer:g} kN/m"
+    axes.text(0.75 * a, 1.1 * a, f"{device.name}: {pulse}", fontsize=8, va="center")
     if test.water_table is not None and test.water_table < down:
         axes.axhline(-test.water_table, color=COLOURS[0], ls="--", lw=1)
         axes.text(0.1 * a, -test.water_table, "water table", fontsize=8, va="bottom", color=COLOURS[0])
@@ -66,8 +68,12 @@ def _last_drop(axes, measured: Measured, record):
     seen = history["time"] >= start - 1e-9
     t = 1e3 * (history["time"][seen] - start)
     force, s = history["force"][seen], 1e3 * (history["deflection"][seen] - history["deflection"][seen][0])
-    axes.plot(t, force, LINES[1], color=COLOURS[5], label="force [kN]")
-    axes.plot(t, s, LINES[0], color=COLOURS[0], label="deflection [mm]")
+    for name, values, factor, line, colour in (
+        ("force [kN]", force, 1.0, LINES[1], COLOURS[5]),
+        ("deflection [mm]", s, 1e3, LINES[0], COLOURS[0]),
+    ):
+        axes.plot(t, values, line, color=colour, label=name)
+        _band(axes, t, values, factor * measured.band(name.split()[0], start).total[seen], colour)
     told = []
     if record:
         own = record_of(record)
@@ -87,6 +93,11 @@ def _last_drop(axes, measured: Measured, record):
     return told
 
 
+def _band(axes, time, values, error, colour):
+    """The error of a history about it."""
+    axes.fill_between(time, values - error, values + error, color=colour, alpha=0.2, lw=0)
+
+
 def _pressures(axes, measured: Measured):
     test, history = measured.test, measured.answers.history
     if not test.wet:
@@ -97,8 +108,10 @@ def _pressures(axes, measured: Measured):
     seen = history["time"] >= start - 1e-9
     t = 1e3 * (history["time"][seen] - start)
     for i, depth in enumerate(test.depths[:4]):
-        p = history[f"p_w_{point_of(depth)}"][seen]
-        axes.plot(t, p - p[0], LINES[i], color=COLOURS[i], label=f"{1e3 * depth:.0f} mm below")
+        name = f"p_w_{point_of(depth)}"
+        p = history[name][seen] - history[name][seen][0]
+        axes.plot(t, p, LINES[i], color=COLOURS[i], label=f"{1e3 * depth:.0f} mm below")
+        _band(axes, t, p, measured.band(name, start).total[seen], COLOURS[i])
     axes.legend(fontsize=8)
     axes.set(xlabel="time since the drop [ms]", ylabel="change of the water pressure [kPa]", title="last drop")
 
@@ -179,19 +192,25 @@ def write_page(measured: Measured, folder: pathlib.Path, record: str | None = No
             f"{i + 1} ({'measured' if d.measured else 'seating'})",
             *(
                 f"{getattr(d, n) * unit_of(n)[1]:.4g} &plusmn; {errors[f'{d.name}.{n}'].total * unit_of(n)[1]:.1g}"
-                for n in ("deflection", "modulus", "rebound", "settlement")
+                for n in ("deflection", "modulus", "rebound", "settlement", "force")
             ),
             f"{1e3 * d.deflection / d.velocity:.3g}",
+            f"{1e3 * d.lift:.2g}",
         ]
         for i, d in enumerate(answers.drops)
     ]
-    head = ["drop", "deflection [mm]", "modulus [MN/m<sup>2</sup>]", "rebound [mm]", "settlement [mm]", "s/v [ms]"]
+    head = ["drop", "deflection [mm]", "modulus [MN/m<sup>2</sup>]", "rebound [mm]", "settlement [mm]", "force [kN]"]
+    head += ["s/v [ms]", "lift [mm]"]
+    histories = [
+        [name, f"{change:.4g}", *(f"{x:.1g}" for x in (e.total, e.mesh, e.steps, e.solve)), unit]
+        for name, change, e, unit in measured.changes()
+    ]
     device = test.device
     formula = (
         "E<sub>vd</sub> = 22.5/s"
-        if device.name == "zorn" and abs(device.stress * device.radius - 15.0) < 0.01
-        else f"E = {device.shape:.4g} (1 - {device.poisson:g}<sup>2</sup>) &sigma; r/s, "
-        f"&sigma; = {device.stress:.4g} kPa"
+        if device.name == "zorn" and abs(device.modulus(1e-3) - 22.5e3) < 1.0
+        else f"E = {device.shape:.4g} (1 - {device.poisson:g}<sup>2</sup>) &sigma; r/s, &sigma; "
+        + ("of the largest force of each drop" if device.cell else f"= {device.peak / device.area:.4g} kPa")
     )
     water = (
         f"S_w = {answers.saturation:.3g} and a suction of {answers.suction:.4g} kPa below the plate before the drops"
@@ -209,6 +228,11 @@ Errors are those of mesh, steps and tolerances, measured by four runs; they say 
 <img alt="input, last drop, pressures, drops, profile, field" src="data:image/png;base64,{image}">
 <table><tr>{"".join(f"<th>{x}</th>" for x in head)}</tr>
 {"".join("<tr>" + "".join(f"<td>{x}</td>" for x in row) + "</tr>" for row in rows)}</table>
+<p>The plate {"is tied to the ground" if test.tied else "lies loose: lift is how far it is thrown up"}.
+Histories in histories.csv, each with its error at every time:</p>
+<table><tr><th>history</th><th>largest change</th><th>largest error</th><th>of mesh</th><th>of steps</th>
+<th>of solving</th><th>unit</th></tr>
+{"".join("<tr>" + "".join(f"<td>{x}</td>" for x in row) + "</tr>" for row in histories)}</table>
 {"".join(f"<p>{html.escape(x)}</p>" for x in told)}
 <h2>Warnings</h2><ul>{warnings}</ul>
 <p>Input: scene.nml. Tables: results.csv, drops.csv, histories.csv. Fields: {html.escape(str(measured.folder.name))}
