@@ -8,7 +8,7 @@ module mud_events
       EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate
    use mud_integration, only: integration_t
-   use mud_isotropic_memory, only: drive_of_margin, margin_after
+   use mud_isotropic_memory, only: drive_of_margin, near_memory, margin_after
    use mud_kinds, only: wp
    use mud_landing, only: land_on
    use mud_params, only: params_t
@@ -95,6 +95,7 @@ contains
             end associate
          case (EVENT_REVERSAL)
             possible = may_reverse(par, inc, trial)
+            if (possible .and. inc%rests) possible = .not. near_memory(inc, trial%margin, trial%w(1))
             if (.not. possible) return
             reversal = h
             call find_reversal(par, inc, trial, it%counters, reversal, possible)

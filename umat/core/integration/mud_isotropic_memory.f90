@@ -15,7 +15,7 @@ module mud_isotropic_memory
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: drive_of_margin, margin_after, margins_at_stages, changes_of_measure, changes_by_shear
+   public :: drive_of_margin, near_memory, margin_after, margins_at_stages, changes_of_measure, changes_by_shear
 
    !> A drive this much smaller than that of the strain's length is none, and counts as loading: rounding, as in shear
    !> without a change of volume. An unloading is located where it is this far below zero [-].
@@ -38,6 +38,17 @@ contains
       drive = (m%by_p*w%k - m%by_e*(1.0_wp + e))*(inc%d_v + w%swell) + m%by_pc*inc%d_pc &
               + ROUNDING*abs(m%by_p)*w%k*inc%length
    end function drive_of_margin
+
+   !> True where the isotropic mechanism rests so little below its memory that a compression by the radius of the
+   !> elastic domain would reach it: the stress ratio turns there, and a host's noise is no reversal.
+   !> docs/theory/material.md section 4.10.
+   pure logical function near_memory(inc, margin, w)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: margin
+      type(rate_t), intent(in) :: w
+
+      near_memory = inc%rests .and. -margin*w%p < sqrt(3.0_wp)*inc%rho*w%k
+   end function near_memory
 
    !> Rate at which contraction by shear, or dilation, changes the margin at the virgin state, beside the measure [-].
    pure real(wp) function contraction(m, w, e) result(rate)
