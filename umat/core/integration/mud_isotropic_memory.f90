@@ -4,7 +4,7 @@
 module mud_isotropic_memory
    use mud_bonding, only: bonding_t, bonding, bonding_curvature, bonding_with_turn
    use mud_elastic, only: bulk_modulus, bulk_slope, BULK_EXPONENT
-   use mud_increment, only: increment_t, rate_of, void_ratio_at, suction_at, NY
+   use mud_increment, only: increment_t, rate_of, void_ratio_at, suction_at
    use mud_kinds, only: wp
    use mud_margin, only: measure_t, measure, change_of_stiffness, shear_share, DEPTH
    use mud_params, only: params_t
@@ -14,6 +14,7 @@ module mud_isotropic_memory
    use mud_substep, only: MAX_STAGES
    use mud_tensor, only: LANES, trace
    use mud_trial, only: trial_t
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: drive_of_margin, turns_by_resting, margin_after, margins_at_stages, changes_of_measure, changes_by_shear
