@@ -102,6 +102,7 @@ contains
       law%given_tolerance = not_the_default('tolerance', law%tolerance)
       law%given_scheme = not_the_default('scheme', law%props(property_index('scheme')))
       law%unguarded = releases_pressure(law%props)
+      law%overcounts_cycles = .true.
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS

@@ -11,7 +11,7 @@ module material_point
    implicit none (type, external)
    private
    public :: material_t, material_slot_t, response_t, report_t, remark_t, state_index, swollen
-   public :: lost_pressure, PRESSURE_LOST, range_t, untested
+   public :: lost_pressure, PRESSURE_LOST, CYCLES_UNTRUSTED, MANY_REVERSALS, range_t, untested
    public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
 
    integer, parameter :: MOST_POINTS = 12   !< Most points of a batch: the quadrature points of an element.
@@ -26,6 +26,12 @@ module material_point
    !> Sentence on a point without mean effective stress. The library says it to hosts of umat_.
    character(*), parameter :: PRESSURE_LOST = 'the model has no meaning below 0, and its tension cut-off is off. '// &
       'Do not use the results from here on; set cutoff = 1.'
+
+   !> Sentence on a load that has turned more often than MANY_REVERSALS.
+   character(*), parameter :: CYCLES_UNTRUSTED = 'settlement that cycles accumulate is not to be trusted. After '// &
+      'hundreds of drained cycles this soil model strains 40 to 90 times as much as tests do '// &
+      '(verification/material/drained_cycles/README.md).'
+   integer, parameter :: MANY_REVERSALS = 20
 
    !> Report of a batch of updates.
    type :: report_t
@@ -72,6 +78,7 @@ module material_point
       logical :: saturation_is_state = .false.   !< The saturation has a history: retention() is where it starts, no
                                                  !< more.
       logical :: unguarded = .false.        !< Made for a mean effective stress above 0, and nothing keeps it there.
+      logical :: overcounts_cycles = .false.     !< It strains far more in many cycles than tests do: CYCLES_UNTRUSTED.
       logical :: cohesionless = .false.     !< It bears no tension, and without stress it has no stiffness.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
       integer :: n_guards = 0

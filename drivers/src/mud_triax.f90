@@ -4,14 +4,14 @@ program mud_triax
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use kinds, only: wp
-   use material_point, only: PRESSURE_LOST, range_t, untested
+   use material_point, only: PRESSURE_LOST, CYCLES_UNTRUSTED, MANY_REVERSALS, range_t, untested
    use arguments, only: option_t, read_command_line, option_given, option_value, WORD_LENGTH
    use triax_accuracy, only: accuracy_t, reach_accuracy, verify_accuracy, note_accuracy, accuracy_lines, is_met, &
                              LINE_LENGTH
    use triax_case, only: case_t, read_case
    use library_tables, only: library_version
    use material_folder, only: material_path
-   use texts, only: short
+   use texts, only: short, whole
    use triax_point, only: point_t, void_ratio, mean_stress
    use triax_control, only: tally_t
    use triax_output, only: table_t, open_table
@@ -115,6 +115,8 @@ contains
       if (test%soil%law%unguarded .and. tally%least_pressure < 0.0_wp) write (error_unit, '(a)') &
          'mud_triax: warning: the mean effective stress p'' fell to '//short(tally%least_pressure)//' '// &
          trim(test%soil%law%unit%name)//': '//PRESSURE_LOST
+      if (test%soil%law%overcounts_cycles .and. tally%reversals > MANY_REVERSALS) write (error_unit, '(a)') &
+         'mud_triax: warning: the load has turned '//whole(tally%reversals)//' times: '//CYCLES_UNTRUSTED
       if (.not. quiet) call show_summary(test, table, point, tally, timer)
       if (fault%code == 0 .and. test%accuracy > 0.0_wp) call show_accuracy(answer, quiet .or. table%to_screen)
    end subroutine run

@@ -12,7 +12,7 @@ module triax_run
    use triax_output, only: table_t, write_row, add_note, close_table
    use triax_point, only: point_t
    use triax_progress, only: timer_t, progress_is_due, show_progress
-   use triax_stage, only: CONTROL_NAMES
+   use triax_stage, only: CONTROL_NAMES, keeps_volume
    implicit none (type, external)
    private
    public :: run_test
@@ -49,6 +49,8 @@ contains
                call next_increment(test%soil, stage, run, point, tally, fault)
                if (fault%code /= 0) exit stages
                tally%increments = tally%increments + 1
+               if (run%way /= way .and. .not. (run%finished .or. keeps_volume(stage%control))) &
+                  tally%reversals = tally%reversals + 1
                if (present(moments)) call note_moment(moments, [i, way, k], run%finished .or. run%way /= way, &
                                                       values_of(test%soil, point, run, 0.0_wp, i))
                if (run%row) then

@@ -4,6 +4,7 @@ module run_output
    use checkpoints, only: checkpoint_observer_t
    use contact_alarm, only: contact_alarm_t
    use convergence_alarm, only: convergence_alarm_t
+   use cycles_alarm, only: cycles_alarm_t
    use field_files, only: field_observer_t
    use kinds, only: wp
    use ledger_observer, only: ledger_observer_t
@@ -34,6 +35,7 @@ contains
       call observers%add(convergence_alarm_t())
       call observers%add(contact_alarm_t())
       call observers%add(pressure_alarm_t())
+      call observers%add(cycles_alarm_t())
       call observers%add(localisation_observer_t())
       call observers%add(ledger_observer_t())
       call observers%add(water_alarm_t())

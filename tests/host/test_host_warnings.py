@@ -324,3 +324,33 @@ def test_a_material_outside_its_tests_is_told():
     (work / "scene.nml").write_text(SCENE.replace("toyoura.nml'", "toyoura.nml' tested_e_min = 1 tested_e_max = 0.5"))
     done = subprocess.run([host, work / "scene.nml", "--check"], capture_output=True, text=True, env=environment)
     check("a range upside down is refused", done.returncode == 2 and "at most tested_e_max" in done.stderr, done.stderr)
+
+
+PULSES = (SCENE.replace("times = 0, 1 values = 0, 1", "kind = 'triangle' period = 0.1 repeats = {repeats}")
+          .replace("duration = 1 dt = 0.5", "duration = {repeats}e-1 dt = 0.05 steps = 'given'"))
+# Ripples of a fiftieth of the range turn as often.
+RIPPLES = ", ".join(f"{0.05*i:g}" for i in range(24)), ", ".join(f"{0.5 + 0.02*(i % 2):g}" for i in range(24))
+
+
+def told_of_cycles(text):
+    return [line for line in warnings(text, "--quiet") if "settlement that cycles accumulate" in line]
+
+
+def test_a_load_that_turns_more_than_twenty_times_is_told_once():
+    # Eleven triangles have eleven tops and ten feet between them, ten have nineteen turns.
+    told = told_of_cycles(PULSES.format(repeats=11))
+    check("eleven pulses are told once", len(told) == 1 and "history 'h' has turned 21 times" in told[0] and
+          "40 to 90 times" in told[0] and "drained_cycles/README.md" in told[0], told)
+    check("ten are not", told_of_cycles(PULSES.format(repeats=10)) == [])
+    elastic = PULSES.format(repeats=11).replace("material = 'sand'", "material = 'rock'")
+    check("elastic ground is not told of", told_of_cycles(elastic) == [])
+    ripples = PULSES.format(repeats=12).replace("kind = 'triangle' period = 0.1 repeats = 12",
+                                                f"times = 0, {RIPPLES[0][3:]}, 1.2 values = 0, {RIPPLES[1][5:]}, 1")
+    check("nor a load that ripples", told_of_cycles(ripples) == [])
+
+
+def test_turns_are_counted_over_a_restart():
+    text = PULSES.format(repeats=11).replace("gravity = 9.81", "gravity = 9.81 checkpoint_steps = 21")
+    start("turns", text)
+    done = start("turns", text, "--restart", work / "turns/checkpoint.h5")
+    check("a run that is taken up knows the turns before", "has turned 21 times" in done.stderr, done.stderr)

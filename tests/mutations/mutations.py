@@ -12,6 +12,7 @@ BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_even
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
 EVENT_TABLE = "core/integration/mud_event_table.f90"
+ISOTROPIC_MEMORY = "core/integration/mud_isotropic_memory.f90"
 PRELOADING = "core/laws/mud_preloading.f90"
 FLUIDITY = "core/laws/mud_fluidity.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
@@ -138,7 +139,7 @@ MUTATIONS = [
      (TRANSITIONS, "it%state%margin = 0.0_wp\n      if (it%state%open", "it%state%margin = it%state%margin\n      if (it%state%open")),
     ("the measure without the swelling", (MARGIN, "- 3.0_wp*m%kappa/par%lambda", "- 0.0_wp*m%kappa/par%lambda")),
     ("the derivative of what contraction adds to the margin left out",
-     (CONSISTENT, "if (follows) margin = margin + matmul", "if (follows) margin = margin + 0.0_wp*matmul")),
+     (CONSISTENT, "margin = margin + inc%scheme%b(i)*of_margin(:, i)", "margin = margin + 0.0_wp*of_margin(:, i)")),
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
     ("forget to zero the plastic shear at a reversal",
@@ -223,6 +224,10 @@ MUTATIONS = [
      (INCREMENT, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
     ("a switch of the isotropic mechanism that does not move",
      (EVENT_TABLE, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
+    ("noise at what the isotropic mechanism remembers is a reversal",
+     (ISOTROPIC_MEMORY, "turns = inc%rests .and.", "turns = .false. .and.")),
+    ("shear that turns just below the isotropic memory is noise",
+     (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
     ("the place where a drift ends is not located", (EVENTS, "FEW_STARTS = 1", "FEW_STARTS = 0")),
     ("shear inside the elastic domain with the modulus at the stress",
      (INCREMENT, "g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)", "g = 2.0_wp*w%g")),

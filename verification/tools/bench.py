@@ -19,7 +19,7 @@ CASES = ROOT / "drivers" / "cases"
 MATERIAL = ROOT / "drivers" / "materials" / "toyoura.nml"
 # The model as it was published, without any guard of this library (docs/theory/material.md section 5).
 GUARDS = ("x_0", "x_rev", "cap_d", "cap_h", "cutoff")
-AS_PUBLISHED = dict(memory_rule=0, rho_e=0.0, scheme=1, **dict.fromkeys(GUARDS, 0))
+AS_PUBLISHED = dict(memory_rule=0, rho_e=0.0, isotropic=1, scheme=1, **dict.fromkeys(GUARDS, 0))
 
 
 @dataclass(frozen=True)

@@ -218,7 +218,7 @@ module mud_registry
          '1: suction bonding zeta acts on the lines of eqs (7), (8); 0: f = 1'), &
       property_t(P_FABRIC, 'fabric', 'fabric', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
          '1: fabric z evolves and acts on dilatancy; 0: A_d = A_0'), &
-      property_t(P_ISOTROPIC, 'isotropic', 'isotropic', '1', KIND_OPTION, 0.0_wp, 2.0_wp, 1.0_wp, 'mended', &
+      property_t(P_ISOTROPIC, 'isotropic', 'isotropic', '1', KIND_OPTION, 0.0_wp, 2.0_wp, 2.0_wp, 'mended', &
          'isotropic mechanism, eq. (4)'), &
       property_t(P_LODE, 'lode', 'lode', '1', KIND_SWITCH, 0.0_wp, 1.0_wp, 1.0_wp, 'rebuilt', &
          '1: strength depends on the Lode angle; 0: circle of M_c'), &

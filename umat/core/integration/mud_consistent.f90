@@ -210,9 +210,9 @@ contains
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
       real(wp), intent(inout) :: margin(DIRECTIONS)   !< Derivatives of the isotropic memory's margin less its measure.
       real(wp) :: y(DIRECTIONS*NY), time, dt(DIRECTIONS), &
-         of_margin(DIRECTIONS, MAX_STAGES), of_stages(MAX_STAGES), at_stages(MAX_STAGES), start, &
+         of_margin(DIRECTIONS, MAX_STAGES), du(DIRECTIONS), of_stages(MAX_STAGES), at_stages(MAX_STAGES), start, &
          left(MAX_STAGES + 1), d_left(DIRECTIONS, MAX_STAGES + 1)
-      integer :: i, last, row, live, n
+      integer :: i, j, last, row, live, n
       logical :: moves, follows
 
       ! the last stage of such a pair serves the error estimate and the next substep, not the solution
@@ -241,9 +241,14 @@ contains
             end if
             call change_of_stage(par, inc, trial%mode, trial%w(i), trial%points(:, i), time, .false., &
                                  ends .and. i == last, dt, r_in, driving, y, rates(:, i))
-            if (follows) of_margin(:, i) = stage_of_margin(i, trial%points(:, i), time, dt, &
-               margin + matmul(of_margin(:, 1:i - 1), weights), y, rates(:, i))
          end associate
+         if (follows) then
+            du = margin
+            do j = 1, i - 1
+               du = du + inc%scheme%a(row + j)*of_margin(:, j)
+            end do
+            of_margin(:, i) = stage_of_margin(i, trial%points(:, i), time, dt, du, y, rates(:, i))
+         end if
          call finish_stage(trial, h, i, live, moves, dh, rates)
       end do
       if (ends) live = 6   ! stresses stand first
@@ -256,8 +261,12 @@ contains
                                 d_left(:, last + 1))
             call add_changes_of_faded(trial%transient, fading, last, h, weights, left, d_left, live, y1(1:n))
          end if
-         if (follows) margin = margin + matmul(of_margin(:, 1:last), weights)
       end associate
+      if (follows) then
+         do i = 1, last
+            margin = margin + inc%scheme%b(i)*of_margin(:, i)
+         end do
+      end if
    contains
       !> Contribution of the rate of stage i over the whole substep to the margin of the isotropic memory less its
       !> measure.

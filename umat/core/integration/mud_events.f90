@@ -8,7 +8,7 @@ module mud_events
       EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate
    use mud_integration, only: integration_t
-   use mud_isotropic_memory, only: drive_of_margin, margin_after
+   use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
    use mud_kinds, only: wp
    use mud_landing, only: land_on
    use mud_params, only: params_t
@@ -67,6 +67,7 @@ contains
       real(wp), intent(inout) :: h
       type(integration_t), intent(inout) :: it
       logical, intent(out) :: possible
+      logical :: rests
       real(wp) :: reversal
 
       possible = .true.
@@ -96,6 +97,9 @@ contains
          case (EVENT_REVERSAL)
             possible = may_reverse(par, inc, trial)
             if (.not. possible) return
+            call turns_by_resting(par, inc, trial, trial%time + h, trial%y, trial%margin, it%counters, rests)
+            if (rests) possible = .false.
+            if (rests) return
             reversal = h
             call find_reversal(par, inc, trial, it%counters, reversal, possible)
             if (.not. possible .or. reversal >= h) return

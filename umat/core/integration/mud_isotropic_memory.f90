@@ -4,18 +4,20 @@
 module mud_isotropic_memory
    use mud_bonding, only: bonding_t, bonding, bonding_curvature, bonding_with_turn
    use mud_elastic, only: bulk_modulus, bulk_slope, BULK_EXPONENT
-   use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_increment, only: increment_t, rate_of, void_ratio_at, suction_at
    use mud_kinds, only: wp
    use mud_margin, only: measure_t, measure, change_of_stiffness, shear_share, DEPTH
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
+   use mud_state, only: counters_t
    use mud_substep, only: MAX_STAGES
    use mud_tensor, only: LANES, trace
    use mud_trial, only: trial_t
+   use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: drive_of_margin, margin_after, margins_at_stages, changes_of_measure, changes_by_shear
+   public :: drive_of_margin, turns_by_resting, margin_after, margins_at_stages, changes_of_measure, changes_by_shear
 
    !> A drive this much smaller than that of the strain's length is none, and counts as loading: rounding, as in shear
    !> without a change of volume. An unloading is located where it is this far below zero [-].
@@ -38,6 +40,28 @@ contains
       drive = (m%by_p*w%k - m%by_e*(1.0_wp + e))*(inc%d_v + w%swell) + m%by_pc*inc%d_pc &
               + ROUNDING*abs(m%by_p)*w%k*inc%length
    end function drive_of_margin
+
+   !> Whether the stress ratio turns at y only because the isotropic mechanism rests: so little below its memory that a
+   !> compression by the radius of the elastic domain would reach it, and with the mechanism it would not turn. Noise of
+   !> a host is no reversal. docs/theory/material.md section 4.10.
+   pure subroutine turns_by_resting(par, inc, trial, time, y, margin, counters, turns)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: time, y(NY), margin
+      type(counters_t), intent(inout) :: counters
+      logical, intent(out) :: turns
+      type(increment_t) :: acting
+      type(rate_t) :: w
+
+      turns = inc%rests .and. -margin*trial%w(1)%p < sqrt(3.0_wp)*inc%rho*trial%w(1)%k
+      if (.not. turns) return
+      acting = inc
+      acting%rests = .false.
+      w = trial%w(1)
+      call rate_of(par, acting, time, y, trial%r_in, trial%mode, w, counters)
+      turns = w%x >= -par%x_rev
+   end subroutine turns_by_resting
 
    !> Rate at which contraction by shear, or dilation, changes the margin at the virgin state, beside the measure [-].
    pure real(wp) function contraction(m, w, e) result(rate)

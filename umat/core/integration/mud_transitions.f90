@@ -2,7 +2,7 @@
 !> Transitions between substeps: the mode of the coming one, reversals and returns of the memory, opening and closing at
 !> p_min, and what an accepted substep leaves behind.
 module mud_transitions
-   use mud_isotropic_memory, only: drive_of_margin, margin_after
+   use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_consistent, only: jump_of_memory, changes_of_parting, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
@@ -159,6 +159,7 @@ contains
       type(memory_t) :: before
       type(rate_t) :: trigger
       real(wp) :: t(6)
+      logical :: noise
 
       t = elastic_rate(it%inc, it%trial%w(1), r)
       if (par%memory_rule == RULE_RETURN_POINT) then
@@ -167,7 +168,10 @@ contains
       if (.not. it%trial%w(1)%loading) return
       if (it%event /= EVENT_FORWARDS) then
          if (it%trial%w(1)%x >= 0.0_wp) return
-         if (it%trial%w(1)%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL) then
+         noise = it%trial%w(1)%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL
+         if (.not. noise) call turns_by_resting(par, it%inc, it%trial, it%trial%time, it%trial%y0, it%state%margin, &
+                                                it%counters, noise)
+         if (noise) then
             it%counters%hysteresis = it%counters%hysteresis + 1
             return
          end if

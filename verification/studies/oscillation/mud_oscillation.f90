@@ -8,14 +8,14 @@ program mud_oscillation
    implicit none (type, external)
    character(40) :: id
    character(10) :: path, noise
-   integer :: rule, scheme, events, seed
+   integer :: rule, isotropic, scheme, events, seed
    real(wp) :: e, p, suction, from, to, last, top, size, growth, increment, tolerance, rho_e, eps_hat
    logical :: drained, random_events
    character(12) :: off(8)   !< Entries of PROPS that are 0, the rest is empty.
    integer :: code
    character(200) :: message
-   namelist /run/ id, path, noise, rule, scheme, events, seed, e, p, suction, from, to, last, top, size, growth, &
-      increment, tolerance, rho_e, eps_hat, drained, random_events, off
+   namelist /run/ id, path, noise, rule, isotropic, scheme, events, seed, e, p, suction, from, to, last, top, size, &
+      growth, increment, tolerance, rho_e, eps_hat, drained, random_events, off
 
    write (output_unit, '(a)') 'id,status,s11,s22,s33,s12,s13,s23,e,substeps,rejects,rates,resets,halvings'
    do
@@ -34,6 +34,7 @@ contains
       path = 'straight'
       noise = 'back'
       rule = 1
+      isotropic = 2
       scheme = 1
       events = 0
       seed = 1
@@ -67,6 +68,7 @@ contains
       random%seed = 7919_int64*seed
       call prepare(soil)
       call set_property(soil, 'memory_rule', real(rule, wp))
+      call set_property(soil, 'isotropic', real(isotropic, wp))
       call set_property(soil, 'scheme', real(scheme, wp))
       call set_property(soil, 'tolerance', tolerance)
       call set_property(soil, 'rho_e', rho_e)

@@ -120,7 +120,7 @@ def clean_key(values, own_rule):
 def namelist(name, values, **changed):
     text = [f"&run id='{name}' rule={values['memory']} rho_e={values['rho_e']}"]
     if values["rule"] == "as_published":
-        text.append("off=" + ",".join(f"'{guard}'" for guard in GUARDS))
+        text.append("isotropic=1 off=" + ",".join(f"'{guard}'" for guard in GUARDS))
     for key in DEFAULT:
         value = changed.get(key, values[key])
         text.append(f"{key}={value!r}" if isinstance(value, str) else
