@@ -9,7 +9,7 @@ module cycles_alarm
    use model_types, only: model_t
    use run_observer, only: observer_t, accepted_step_t
    use run_state, only: run_t
-   use scene_types, only: amplitude_at, acts_in
+   use scene_parts, only: amplitude_at, acts_in
    use texts, only: short, whole
    use warnings, only: print_warning
    implicit none (type, external)
@@ -32,7 +32,7 @@ contains
    !> Exchanges what is counted; a run that is taken up tells it again.
    subroutine exchange(self, archive)
       class(cycles_alarm_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
 
       call archive%enter('cycles')
       call archive%exchange_allocatable('farthest', self%farthest, '1', 'factors that histories came to since they turned')
@@ -49,8 +49,6 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (unused => fault)
-      end associate
       if (run%steps > 0) return
       self%farthest = [(amplitude_at(model%amplitudes(i), run%state%time), i=1, size(model%amplitudes))]
       allocate (self%sense(size(self%farthest)), self%turns(size(self%farthest)), source=0)
@@ -66,8 +64,6 @@ contains
       real(wp) :: factor, least
       integer :: i
 
-      associate (unused => fault)
-      end associate
       do i = 1, size(self%turns)
          factor = amplitude_at(model%amplitudes(i), run%next%time)
          if (.not. acts(model, i, model%stages(done%stage)%name)) then
