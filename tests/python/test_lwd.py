@@ -101,6 +101,26 @@ def test_scenes_are_taken_by_the_host_without_a_warning():
         check(f"{name} is taken", done.returncode == 0 and not warned, done.stderr)
 
 
+def test_rain_wets_the_ground_below_a_plate_that_stands():
+    # 20 mm in an hour: the front is broad, and suction falls by more than a tenth 75 mm below. The ground heaves, and the
+    # plate with it.
+    text = scene_of(Test(device_of("zorn"), (Layer("toyoura", 0.8),), suction=30, seating=0, measured=1, width=0.9,
+                         depth=0.9, rain=20, rain_hours=1))
+    (work / "rain.nml").write_text(text)
+    done = subprocess.run(
+        [build / "host/mud_host", work / "rain.nml", "--output", work / "rain", "--fineness", "0.5"]
+        + ["--step-tolerance", "0.03", "--quiet"], capture_output=True, text=True, env=ENVIRONMENT)
+    check("it runs", done.returncode == 0, done.stderr)
+    check("the contact begins with the weight of the plate", "overlap" not in done.stderr, done.stderr)
+    table = tables.columns(work / "rain/histories.csv")
+    suction = [float(np.interp(t, table["time"], table["d75.p_c"])) for t in (2.0, 3602.0)]
+    check("suction falls", suction[0] > 29.9 and suction[1] < 0.9 * suction[0], suction)
+    plate = tables.columns(work / "rain/contact.csv")
+    rains = (plate["time"] > 2) & (plate["time"] < 3602)
+    pushed = plate["face.thrust"][rains]
+    check("the plate keeps its weight", np.all(abs(pushed / (0.015 * 9.81) - 1) < 0.01), (pushed.min(), pushed.max()))
+
+
 def test_elastic_ground_gives_the_same_deflection_every_time_and_takes_it_back():
     done = lwd("test", *ELASTIC, *SMALL, "--output", "elastic", "--fineness", "1")
     check("it runs", done.returncode == 0, done.stderr)

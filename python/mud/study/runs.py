@@ -327,5 +327,8 @@ def find_host(host: str = "") -> str:
             return found
     found = shutil.which("mud_host") or (str(tree) if tree.exists() else "")
     if not found:
-        raise InputError("mud_host is not found; name it by --host or MUD_HOST, or put it into the search path")
+        raise InputError(
+            "mud_host is not found: ./demo of the source tree builds it in build/release/host; name it by --host or "
+            "MUD_HOST, or put it into the search path"
+        )
     return found
