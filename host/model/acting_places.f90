@@ -6,11 +6,11 @@ module acting_places
    use faults, only: fault_t, raise
    use generalised_alpha, only: has_inertia
    use model_types, only: model_t, action_t
-   use scene_parts, only: acts_in, place_of, stage_t, NAME_LENGTH
+   use scene_parts, only: acts_in, place_of, NAME_LENGTH
    use texts, only: short
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, acting_contacts, nodes_of_ground, check_sides, check_ground
+   public :: facing_edges, acting_stages, nodes_of_ground, check_sides, check_ground
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -59,16 +59,6 @@ contains
       allocate (names(count(wanted)))
       names = pack(model%stages%name, wanted)
    end function acting_stages
-
-   !> Which contacts act in a stage. (contacts)
-   pure function acting_contacts(model, stage) result(acts)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      logical :: acts(size(model%contacts))
-      integer :: i
-
-      acts = [(acts_in(model%contacts(i)%stages, stage%name), i=1, size(acts))]
-   end function acting_contacts
 
    !> On which sides of the edges of a group a stage has ground. (edges)
    pure function sides_with_ground(model, group, number) result(sides)

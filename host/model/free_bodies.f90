@@ -13,7 +13,7 @@ module free_bodies
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z
    implicit none (type, external)
    private
-   public :: check_bodies, bodies_on_contact
+   public :: check_bodies, note_bodies_on_contact
 
    integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
    character(*), parameter :: MOTIONS(TURN) = [character(18) :: 'moving along r (x)', 'moving along z (y)', 'turning']
@@ -86,6 +86,17 @@ contains
          end associate
       end do
    end function holds_along_r
+
+   !> Notes for every stage which bodies contacts alone hold in it.
+   subroutine note_bodies_on_contact(model)
+      type(model_t), intent(inout) :: model
+      integer :: s
+
+      allocate (model%on_contact(size(model%stages)))
+      do s = 1, size(model%stages)
+         model%on_contact(s)%words = bodies_on_contact(model, model%stages(s))
+      end do
+   end subroutine note_bodies_on_contact
 
    !> Bodies that contacts alone hold in a stage, as the end of a sentence; empty if there are none.
    function bodies_on_contact(model, stage) result(text)

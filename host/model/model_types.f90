@@ -88,6 +88,10 @@ module model_types
       real(wp) :: checkpoint_seconds = 0.0_wp
    end type output_t
 
+   type :: text_t
+      character(:), allocatable :: words
+   end type text_t
+
    type :: solver_t
       logical :: reuse_factors = .true.
       integer :: ordering = 1                        !< See sparse_factors.
@@ -108,6 +112,7 @@ module model_types
       type(contact_pair_t), allocatable :: contacts(:)
       type(tie_t), allocatable :: ties(:)
       type(action_t), allocatable :: actions(:)
+      type(text_t), allocatable :: on_contact(:)     !< (stages) Bodies that contact alone holds: the end of a sentence.
       logical, allocatable :: ground(:, :)           !< (elements, stages) What a stage has; not allocated: all.
       type(term_box_t), allocatable :: terms(:)      !< Those that the scene has, in the order of their registry.
       type(output_t) :: output

@@ -7,7 +7,7 @@ module start_look
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
    use warnings, only: add_warning, WARNING_LENGTH
-   use initial_conditions, only: balance_t
+   use start_findings, only: balance_t
    use model_types, only: model_t, fix_t, plate_t
    use scene_parts, only: acts_in, amplitude_t, place_of, scene_item_t, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole

@@ -3,15 +3,14 @@
 !> not be meant, and where a checkpoint would take it up.
 module start_report
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use acting_places, only: acting_contacts
    use contact_alarm, only: contact_alarm_t
    use faults, only: fault_t
    use generalised_alpha, only: has_rates, has_inertia
-   use initial_conditions, only: balance_t
+   use start_findings, only: balance_t
    use model_types, only: model_t
    use run_cost, only: size_of_run
    use run_observer, only: observers_t
-   use run_state, only: run_t
+   use run_state, only: run_t, act_contacts
    use scene_types, only: scene_t
    use scene_warnings, only: list_warnings
    use start_balance, only: find_imbalance
@@ -43,7 +42,7 @@ contains
          call print_warning(doubts(i))
       end do
       if (.not. only_check) return
-      if (allocated(run%system%contacts)) call run%system%contacts%act(acting_contacts(model, model%stages(1)))
+      call act_contacts(model, model%stages(1), run%system%contacts)
       call contacts%stage_begins(model, run, 1)
    end subroutine report_start
 

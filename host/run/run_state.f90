@@ -5,14 +5,16 @@ module run_state
    use archive, only: archive_t
    use kinds, only: wp
    use control_state, only: control_state_t, new_control_state, exchange_control
-   use initial_conditions, only: tension_t
+   use start_findings, only: tension_t
    use model_types, only: model_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
+   use scene_parts, only: stage_t, acts_in
    use solution, only: solution_t, stage_state_t
    use sparsity_pattern, only: make_pattern
+   use surface_forces, only: surface_forces_t
    implicit none (type, external)
    private
-   public :: run_t, exchange_run
+   public :: run_t, exchange_run, act_contacts
 
    type, extends(solution_t) :: run_t
       type(term_box_t), allocatable :: terms(:)   !< Terms of the model, with what they keep from step to step.
@@ -24,6 +26,17 @@ module run_state
       real(wp) :: seconds_output = 0.0_wp      !< Wall time of the observers.
    end type run_t
 contains
+   !> Sets which contacts act in a stage.
+   subroutine act_contacts(model, stage, contacts)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      class(surface_forces_t), allocatable, intent(inout) :: contacts
+      integer :: i
+
+      if (allocated(contacts)) call contacts%act([(acts_in(model%contacts(i)%stages, stage%name), &
+                                                   i=1, size(model%contacts))])
+   end subroutine act_contacts
+
    !> Exchanges a prepared run with an archive, between two steps. What is restored goes on to the last digit: loads,
    !> supports and the flow that is subtracted follow from the scene, and the ordering of the equations from their
    !> pattern.

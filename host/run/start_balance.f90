@@ -2,14 +2,14 @@
 !> Whether the ground of a scene begins in balance: the forces that nothing balances at time 0, as a stress.
 !> docs/theory/host.md section 8.
 module start_balance
-   use acting_places, only: acting_stages, acting_contacts
+   use acting_places, only: acting_stages
    use kinds, only: wp
    use boundary_loads, only: force_of, plate_loads
-   use initial_conditions, only: balance_t
+   use start_findings, only: balance_t
    use model_types, only: model_t, factor_at, load_t
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
-   use run_state, only: run_t
+   use run_state, only: run_t, act_contacts
    use scene_parts, only: acts_in, LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_U_Z, AT_P_W
    implicit none (type, external)
@@ -40,7 +40,7 @@ contains
       where (abs(forces) < ROUNDING*trial%assembly%scale) forces = 0.0_wp
       touched = 0*forces
       if (allocated(trial%system%contacts)) then
-         call trial%system%contacts%act(acting_contacts(model, model%stages(1)))
+         call act_contacts(model, model%stages(1), trial%system%contacts)
          if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, touched)) return
          touched = touched - forces
       end if

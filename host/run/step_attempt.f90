@@ -7,7 +7,6 @@ module step_attempt
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at
    use convergence, only: control_t, log_t
-   use free_bodies, only: bodies_on_contact
    use generalised_alpha, only: scheme_t, make_scheme, has_rates, has_inertia
    use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
@@ -124,7 +123,7 @@ contains
          ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing, or a
          ! contact that an iterate has opened.
          lost = log%outcome == BODY_FREE .and. run%assembly%replaced == 0
-         if (lost .and. at%step > 0) lost = bodies_on_contact(model, stage) == ''
+         if (lost .and. at%step > 0) lost = model%on_contact(at%stage)%words == ''
          share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
          if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
              lost) then

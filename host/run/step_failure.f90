@@ -6,7 +6,6 @@ module step_failure
    use texts, only: short, whole
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
-   use free_bodies, only: bodies_on_contact
    use model_types, only: model_t, term_box_t
    use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
@@ -52,11 +51,11 @@ contains
          case (BODY_FREE)
             if (run%assembly%replaced > 0) then
                call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//soft_points(model, run)// &
-                          unstressed(run)//bodies_on_contact(model, stage)//': add a surcharge or suction there, '// &
-                          'load in smaller steps, or look for a missing &fix.')
+                          unstressed(run)//model%on_contact(run%at%stage)%words//': add a surcharge or suction '// &
+                          'there, load in smaller steps, or look for a missing &fix.')
                return
             end if
-            alone = bodies_on_contact(model, stage)
+            alone = model%on_contact(run%at%stage)%words
             if (alone /= '') alone = alone//', and surfaces that only touch hold nothing: let them overlap by a '// &
                'millionth of an edge, give a &plate weight = ''yes'' beside gravity, or begin with a dynamic stage'
             call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &

@@ -3,13 +3,12 @@
 module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
-   use acting_places, only: acting_contacts
    use convergence, only: control_t, log_t
    use generalised_alpha, only: scheme_t
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
    use run_observer, only: observers_t, accepted_step_t
-   use run_state, only: run_t
+   use run_state, only: run_t, act_contacts
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
    use step_attempt, only: begin_stage, resume_stage, try_step
@@ -57,7 +56,7 @@ contains
 
       associate (stage => model%stages(number))
          control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
-         if (allocated(run%system%contacts)) call run%system%contacts%act(acting_contacts(model, stage))
+         call act_contacts(model, stage, run%system%contacts)
          ! A run that is taken up again is in the middle of its stage.
          if (run%at%stage == number) then
             call resume_stage(model, run, fault)

@@ -6,10 +6,10 @@ module model_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
    use boundary_builder, only: build_plates, build_boundaries
-   use boundary_loads, only: shape_loads, ties_of
    use degrees_of_freedom, only: number_unknowns
-   use free_bodies, only: check_bodies
+   use free_bodies, only: check_bodies, note_bodies_on_contact
    use given_pressures, only: add_centers, check_places
+   use load_shapes, only: shape_loads, ties_of
    use mesh_builder, only: build_mesh
    use mesh_look, only: check_carried
    use model_types, only: model_t, solver_t
@@ -59,6 +59,7 @@ contains
          end do
       end associate
       if (fault%code /= 0) return
+      call note_bodies_on_contact(model)
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call shape_loads(model, model%dofs)

@@ -8,7 +8,7 @@ module scene_warnings
    use generalised_alpha, only: has_rates
    use idle_keys, only: list_idle_keys
    use warnings, only: add_warning, WARNING_LENGTH
-   use initial_conditions, only: tension_t, balance_t
+   use start_findings, only: tension_t, balance_t
    use key_schema, only: line_of, given, get_number
    use material_elastic, only: elastic_t
    use material_point, only: untested

@@ -1,0 +1,132 @@
+! SPDX-License-Identifier: MIT
+!> Load vectors of a unit of every load, and the nodes that move together: made once, from the mesh.
+module load_shapes
+   use acting_places, only: facing_edges
+   use degrees_of_freedom, only: dofs_t, tie, tie_pairs
+   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
+   use given_pressures, only: edges_with_flow
+   use kinds, only: wp
+   use model_types, only: model_t, load_t
+   use scene_parts, only: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
+   implicit none (type, external)
+   private
+   public :: shape_loads, ties_of
+contains
+   !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
+   !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
+   function ties_of(model) result(ties)
+      type(model_t), intent(in) :: model
+      integer, allocatable :: ties(:, :)
+      integer :: i
+
+      allocate (ties(FIELDS, size(model%domain%mesh%x, 2)), source=0)
+      do i = 1, size(model%plates)
+         if (model%plates(i)%group > 0 .and. .not. model%plates(i)%turns) &
+            call tie(model%domain%mesh%groups(model%plates(i)%group)%nodes, AT_U_Z, ties)
+      end do
+      do i = 1, size(model%ties)
+         call tie_pairs(model%ties(i)%pairs, merge(FIELDS, DISPLACEMENTS, model%ties(i)%pressures), ties)
+      end do
+   end function ties_of
+
+   !> Vectors of unit loads. (unknowns) of every load, per unit of its value: docs/theory/host.md section 7.2.
+   subroutine shape_loads(model, dofs)
+      type(model_t), intent(inout) :: model
+      type(dofs_t), intent(in) :: dofs
+      integer :: i
+
+      do i = 1, size(model%loads)
+         associate (load => model%loads(i))
+            if (allocated(load%shape)) deallocate (load%shape)
+            if (allocated(load%rise)) deallocate (load%rise)
+            allocate (load%shape(dofs%n), source=0.0_wp)
+            call shape_load(model, dofs, load, 1.0_wp, 0.0_wp, load%shape)
+            if (abs(load%value_slope) > 0.0_wp) then
+               allocate (load%rise(dofs%n), source=0.0_wp)
+               call shape_load(model, dofs, load, -load%datum, 1.0_wp, load%rise)
+            end if
+         end associate
+      end do
+   end subroutine shape_loads
+
+   !> Vector of a load of base + slope z.
+   subroutine shape_load(model, dofs, load, base, slope, shape)
+      type(model_t), intent(in) :: model
+      type(dofs_t), intent(in) :: dofs
+      type(load_t), intent(in) :: load
+      real(wp), intent(in) :: base, slope
+      real(wp), intent(inout) :: shape(:)
+      logical :: acts(size(model%domain%mesh%groups(load%group)%edges, 2))
+      integer, allocatable :: edges(:, :)
+      integer :: e, k, f
+
+      associate (group => model%domain%mesh%groups(load%group))
+         if (load%kind < LOAD_FORCE_R) then
+            acts = .true.
+            if (any(load%kind == [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) acts = edges_with_flow(model%domain, load%group)
+            edges = facing_edges(model, load%group, load%stages)
+            do e = 1, size(edges, 2)
+               if (.not. acts(e)) cycle
+               call add_edge(model, dofs, edges(:, e), load%kind, base, slope, shape)
+            end do
+         else
+            f = merge(AT_U_R, AT_U_Z, load%kind == LOAD_FORCE_R)
+            do k = 1, size(group%nodes)
+               associate (at => dofs%of(f, group%nodes(k)))
+                  if (at > 0) shape(at) = shape(at) + (base + slope*model%domain%mesh%x(2, group%nodes(k)))
+               end associate
+            end do
+         end if
+      end associate
+   end subroutine shape_load
+
+   !> A load of base + slope z on an edge; its body lies on the left, so that the outward normal is the tangent turned
+   !> right.
+   subroutine add_edge(model, dofs, edge, kind, base, slope, shape)
+      type(model_t), intent(in) :: model
+      type(dofs_t), intent(in) :: dofs
+      integer, intent(in) :: edge(3), kind
+      real(wp), intent(in) :: base, slope
+      real(wp), intent(inout) :: shape(:)
+      type(edge_point_t) :: points(PER_EDGE)
+      real(wp) :: load
+      integer :: g, i
+
+      points = points_of_edge(model%domain, edge)
+      do g = 1, PER_EDGE
+         associate (n => points(g)%n, m => points(g)%m, tangent => points(g)%tangent, area => points(g)%area, &
+                    ring => points(g)%ring)
+            load = base + slope*points(g)%x(2)
+            do i = 1, 3
+               select case (kind)
+               case (LOAD_PRESSURE)
+                  call add(AT_U_R, i, -n(i)*tangent(2)*ring*load)
+                  call add(AT_U_Z, i, n(i)*tangent(1)*ring*load)
+               case (LOAD_SHEAR_R)
+                  call add(AT_U_R, i, n(i)*area*load)
+               case (LOAD_SHEAR_Z)
+                  call add(AT_U_Z, i, n(i)*area*load)
+               case (LOAD_WATER)
+                  call add(AT_P_W, i, m(i)*area*load)
+               case (LOAD_RAIN)
+                  ! It falls vertically, on what looks upwards.
+                  call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*ring*load)
+               case (LOAD_AIR)
+                  call add(AT_P_W, i, m(i)*area*load)
+                  call add(AT_P_C, i, m(i)*area*load)
+               end select
+            end do
+         end associate
+      end do
+   contains
+      subroutine add(field, i, value)
+         integer, intent(in) :: field, i
+         real(wp), intent(in) :: value
+
+         associate (place => dofs%of(field, edge(i)))
+            if (place > 0) shape(place) = shape(place) + value
+         end associate
+      end subroutine add
+   end subroutine add_edge
+end module load_shapes
