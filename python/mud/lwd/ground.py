@@ -125,8 +125,8 @@ class Test:
 
     @property
     def depths(self) -> list[float]:
-        """Of the points on the axis [m]."""
-        return [x * self.device.radius for x in DEPTHS if x * self.device.radius < self.depth]
+        """Of the points on the axis above the base [m]."""
+        return [x * self.device.radius for x in DEPTHS if x * self.device.radius < 0.99 * self.depth]
 
 
 def point_of(depth: float) -> str:
