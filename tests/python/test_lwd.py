@@ -261,6 +261,8 @@ def test_what_cannot_be_computed_is_refused_in_a_sentence():
         ((*ELASTIC, "--device", "prima", "--buffer", "300"), "needs --fall-mass, --fall, --plate-mass"),
         ((*ELASTIC, "--fall", "0.5"), "needs the stiffness of the buffer in kN/m: --buffer"),
         ((*ELASTIC, "--buffer", "300", "--pulse", "17"), "--pulse gives the pulse"),
+        ((*ELASTIC, "--peak", "7070"), "with up to 1e+05 kPa, and devices stay below 10000 kPa: forces are in kN"),
+        ((*ELASTIC, "--radius", "0.15"), "the radius in mm"),
         ((*ELASTIC, "--drops", "3", "0"), "at least one drop is measured"),
         ((*ELASTIC, "--step-tolerance", "0.5"), "--step-tolerance is 0.5; it is above 0 and at most 0.0316"),
         ((*ELASTIC, "--fineness", "0"), "--fineness is 0"),

@@ -48,7 +48,7 @@ class Answers:
     saturation: float  # of the ground below the plate, before the drops [-]; nan: no water
     void_ratio: float  # there
     suction: float  # there [kPa]
-    history: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  # columns of histories.csv, ascending times
+    history: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  # columns of histories.csv; times ascend
 
     @property
     def deflection(self) -> float:
@@ -175,7 +175,7 @@ def _peak(time, moved):
 
 
 def _depth_of(depths, shares, base):
-    """Depth at which a share that falls with depth is INFLUENCE [m]: between points their logarithms are straight; below
+    """Depth at which a share that falls with depth is INFLUENCE [m]: between points their logarithms are straight; under
     the last one the share itself, down to the base, which does not move."""
     for (d0, s0), (d1, s1) in zip(zip(depths, shares), zip(depths[1:], shares[1:])):
         if s1 <= INFLUENCE < s0:

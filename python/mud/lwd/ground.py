@@ -207,8 +207,8 @@ def quoted(names) -> str:
 
 
 def plate_of(test: Test, stands: list[str]) -> list[str]:
-    """The plate and the force on it. It presses on the ground in the stages in which it `stands`, and leaves it where it
-    is thrown up, unless it is tied."""
+    """The plate and the force on it. It presses on the ground in the stages in which it `stands`, and leaves it where
+    it is thrown up, unless it is tied."""
     device, a = test.device, test.device.radius
     lines, thrown = [], ""
     if not device.buffer:

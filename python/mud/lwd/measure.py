@@ -155,8 +155,8 @@ def _warnings(test, answers, folder, run):
     if answers.tension > 0.05 * test.device.peak / test.device.area:
         found.append(
             f"the tied plate pulls at the ground with {answers.tension:.2g} kPa on its way back, and its weight is "
-            f"{test.device.mass * 9.81 / test.device.area:.2g} kPa: one that lies loose leaves the ground there. Rebound "
-            "and settlement are those of a plate that stays; leave out --tied for one that does not."
+            f"{test.device.mass * 9.81 / test.device.area:.2g} kPa: one that lies loose leaves the ground there. "
+            "Rebound and settlement are those of a plate that stays; leave out --tied for one that does not."
         )
     if answers.share > INFLUENCE:
         found.append(
