@@ -175,8 +175,10 @@ def _peak(time, moved):
 
 
 def _depth_of(depths, shares, base):
-    """Depth at which a share that falls with depth is INFLUENCE [m]: between points their logarithms are straight; under
-    the last one the share itself, down to the base, which does not move."""
+    """Depth at which a share that falls with depth is INFLUENCE [m].
+
+    Between points its logarithm is straight, and below the last one it is itself, down to the base, which does not move.
+    """
     for (d0, s0), (d1, s1) in zip(zip(depths, shares), zip(depths[1:], shares[1:])):
         if s1 <= INFLUENCE < s0:
             return d0 + (d1 - d0) * (math.log(s0) - math.log(INFLUENCE)) / (math.log(s0) - math.log(max(s1, 1e-3)))

@@ -131,10 +131,10 @@ def device_of(name: str, record: str | os.PathLike | None = None, **values: floa
     missing = [OPTIONS[key] for key in (*needed, "mass") if not getattr(device, key)]
     if missing:
         raise InputError(
-            f"the device {name} needs {', '.join(missing)}: its force depends on the height of fall and the buffers "
-            "that are set, and its load cell shows it. Give --peak and --pulse, or --force FILE with the measured force, or "
-            "--fall-mass, --fall and --buffer for a mass that falls on a spring; and --plate-mass, what rests on the "
-            "ground"
+            f"the device {name} needs {', '.join(missing)}: its force depends on the height of fall and on "
+            "the buffers that are set, and its load cell shows it. Give --peak and --pulse, or --force FILE with the "
+            "measured force, or --fall-mass, --fall and --buffer for a mass that falls on a spring; and --plate-mass, "
+            "what rests on the ground"
         )
     if record is not None:
         t, f = force_of(record)
