@@ -171,7 +171,8 @@ def test_recipes_of_pulses_and_machines_run_as_they_stand():
 
 def test_the_recipe_of_a_water_table_is_at_rest():
     water, = recipe("Begin with a water table")
-    text = water + GROUND.replace("-1.2, 0", "-4, 0") + f"""&mud name = 'sand' file = '{root}/drivers/materials/toyoura.nml' /
+    text = water + GROUND.replace("-1.2, 0", "-4, 0") + f"""
+&mud name = 'sand' file = '{root}/drivers/materials/toyoura.nml' /
 &region material = 'sand' void_ratio = 0.75 rho_s = 2.65 retention = 'material' permeability = 'k' /
 &permeability name = 'k' intrinsic = 1e-11 /
 &fix group = 'right' field = 'u_r' /

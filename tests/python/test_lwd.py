@@ -101,9 +101,17 @@ def test_scenes_are_taken_by_the_host_without_a_warning():
         check(f"{name} is taken", done.returncode == 0 and not warned, done.stderr)
 
 
+def test_the_depth_of_influence_ends_at_the_base():
+    from mud.lwd.answers import _depth_of
+
+    # Straight logarithms: a tenth lies in the middle between 1 and 0.01. Below the last point a straight line to 0.
+    check("between points", abs(_depth_of([0.0, 1.0, 2.0], [1.0, 1.0, 0.01], 5.0) - 1.5) < 1e-12)
+    check("above the base", abs(_depth_of([0.0, 1.0], [1.0, 0.4], 2.0) - 1.75) < 1e-12)
+
+
 def test_rain_wets_the_ground_below_a_plate_that_stands():
-    # 20 mm in an hour: the front is broad, and suction falls by more than a tenth 75 mm below. The ground heaves, and the
-    # plate with it.
+    # 20 mm in an hour: the front is broad, and suction falls by more than a tenth 75 mm below. The ground heaves, and
+    # the plate with it.
     text = scene_of(Test(device_of("zorn"), (Layer("toyoura", 0.8),), suction=30, seating=0, measured=1, width=0.9,
                          depth=0.9, rain=20, rain_hours=1))
     (work / "rain.nml").write_text(text)
@@ -134,6 +142,7 @@ def test_elastic_ground_gives_the_same_deflection_every_time_and_takes_it_back()
     # A rigid plate on a half space: pi/2 (1 - nu^2) sigma r/E = 0.715 mm; on 0.9 m above a rigid base less, by inertia
     # more.
     check("the size of the closed form", 0.5 < last < 0.8, last)
+    check("a base so near is told", "the base is within the depth of influence" in done.stderr, done.stderr)
     check("22.5/s", abs(float(drops[1]["modulus_MPa"]) * last / 22.5 - 1) < 1e-3, drops[1])
     page = (work / "elastic/report.html").read_text()
     for words in ("data:image/png;base64,", "22.5/s", "Warnings", "1 (seating)", "2 (measured)", "no water"):
@@ -252,6 +261,8 @@ def test_what_cannot_be_computed_is_refused_in_a_sentence():
         ((*ELASTIC, "--device", "prima", "--buffer", "300"), "needs --fall-mass, --fall, --plate-mass"),
         ((*ELASTIC, "--fall", "0.5"), "needs the stiffness of the buffer in kN/m: --buffer"),
         ((*ELASTIC, "--buffer", "300", "--pulse", "17"), "--pulse gives the pulse"),
+        ((*ELASTIC, "--peak", "7070"), "with up to 1e+05 kPa, and devices stay below 10000 kPa: forces are in kN"),
+        ((*ELASTIC, "--radius", "0.15"), "the radius in mm"),
         ((*ELASTIC, "--drops", "3", "0"), "at least one drop is measured"),
         ((*ELASTIC, "--step-tolerance", "0.5"), "--step-tolerance is 0.5; it is above 0 and at most 0.0316"),
         ((*ELASTIC, "--fineness", "0"), "--fineness is 0"),

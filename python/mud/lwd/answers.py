@@ -43,11 +43,12 @@ class Answers:
 
     drops: list[Drop]
     influence: float  # depth at which the ground moves by a tenth of the plate's deflection, last drop [m]
+    share: float  # of the plate's deflection at the deepest point, last drop [-]
     tension: float  # largest pull of a tied plate at the ground, which a loose one would not have [kPa]
     saturation: float  # of the ground below the plate, before the drops [-]; nan: no water
     void_ratio: float  # there
     suction: float  # there [kPa]
-    history: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  # columns of histories.csv, ascending times
+    history: dict[str, np.ndarray] = field(repr=False, default_factory=dict)  # columns of histories.csv; times ascend
 
     @property
     def deflection(self) -> float:
@@ -125,7 +126,8 @@ def answers_of(test: Test, folder: str | pathlib.Path) -> Answers:
                 history[f"{p}_{point_of(depth)}"] = points[f"{point_of(depth)}.{p}"][last]
     return Answers(
         drops,
-        _depth_of(deepest, shares),
+        _depth_of(deepest, shares, test.depth),
+        shares[-1],
         float(max(0.0, -reaction[seen].min() / device.area)) if test.tied else 0.0,
         float(points[f"{first}.S_w"][row]) if test.wet else math.nan,
         float(points[f"{first}.e"][row]),
@@ -172,9 +174,12 @@ def _peak(time, moved):
     return float(values[best]), float(fine[best])
 
 
-def _depth_of(depths, shares):
-    """Depth at which a share that falls with depth is INFLUENCE [m]; nan if it does not fall so far."""
+def _depth_of(depths, shares, base):
+    """Depth at which a share that falls with depth is INFLUENCE [m].
+
+    Between points its logarithm is straight, and below the last one it is itself, down to the base, which does not move.
+    """
     for (d0, s0), (d1, s1) in zip(zip(depths, shares), zip(depths[1:], shares[1:])):
         if s1 <= INFLUENCE < s0:
-            return d0 + (d1 - d0) * (math.log(s0) - math.log(INFLUENCE)) / (math.log(s0) - math.log(max(s1, 1e-12)))
-    return math.nan
+            return d0 + (d1 - d0) * (math.log(s0) - math.log(INFLUENCE)) / (math.log(s0) - math.log(max(s1, 1e-3)))
+    return base - (base - depths[-1]) * INFLUENCE / shares[-1]

@@ -14,6 +14,7 @@ from .._csv import rows_of
 from ..errors import InputError
 
 G = 9.81
+MOST = 1e4  # stress below a plate, of a wrong unit rather than of a device [kPa]
 FLEXIBLE, RIGID = 2.0, math.pi / 2  # shape factors of a plate under uniform stress, and of a rigid one [-]
 
 
@@ -130,15 +131,22 @@ def device_of(name: str, record: str | os.PathLike | None = None, **values: floa
     missing = [OPTIONS[key] for key in (*needed, "mass") if not getattr(device, key)]
     if missing:
         raise InputError(
-            f"the device {name} needs {', '.join(missing)}: its force depends on the height of fall and the buffers that "
-            "are set, and its load cell shows it. Give --peak and --pulse, or --force FILE with the measured force, or "
-            "--fall-mass, --fall and --buffer for a mass that falls on a spring; and --plate-mass, what rests on the "
-            "ground"
+            f"the device {name} needs {', '.join(missing)}: its force depends on the height of fall and on "
+            "the buffers that are set, and its load cell shows it. Give --peak and --pulse, or --force FILE with the "
+            "measured force, or --fall-mass, --fall and --buffer for a mass that falls on a spring; and --plate-mass, "
+            "what rests on the ground"
         )
-    if record is None:
-        return device
-    t, f = force_of(record)
-    return replace(device, record=str(pathlib.Path(record).resolve()), peak=float(f.max()), pulse=float(t[-1] - t[0]))
+    if record is not None:
+        t, f = force_of(record)
+        record = str(pathlib.Path(record).resolve())
+        device = replace(device, record=record, peak=float(f.max()), pulse=float(t[-1] - t[0]))
+    stress = (device.on_rigid_base()[0] if device.buffer else device.peak) / device.area
+    if stress > MOST:
+        raise InputError(
+            f"the plate presses with up to {stress:.3g} kPa, and devices stay below {MOST:g} kPa: forces are in kN, "
+            "the radius in mm, masses in kg and the buffer in kN/m"
+        )
+    return device
 
 
 def record_of(path: str | os.PathLike) -> dict[str, np.ndarray]:

@@ -125,8 +125,8 @@ class Test:
 
     @property
     def depths(self) -> list[float]:
-        """Of the points on the axis [m]."""
-        return [x * self.device.radius for x in DEPTHS if x * self.device.radius < self.depth]
+        """Of the points on the axis above the base [m]."""
+        return [x * self.device.radius for x in DEPTHS if x * self.device.radius < 0.99 * self.depth]
 
 
 def point_of(depth: float) -> str:
@@ -207,8 +207,8 @@ def quoted(names) -> str:
 
 
 def plate_of(test: Test, stands: list[str]) -> list[str]:
-    """The plate and the force on it. It presses on the ground in the stages in which it `stands`, and leaves it where it
-    is thrown up, unless it is tied."""
+    """The plate and the force on it. It presses on the ground in the stages in which it `stands`, and leaves it where
+    it is thrown up, unless it is tied."""
     device, a = test.device, test.device.radius
     lines, thrown = [], ""
     if not device.buffer:

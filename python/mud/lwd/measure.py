@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..study.accuracy import HALF_DECADE
 from ..study.histories import between
 from ..study.runs import LOOSEST, Scene
-from .answers import Answers, answers_of
+from .answers import INFLUENCE, Answers, answers_of
 from .ground import Test, scene_of, write_record
 
 FINENESS, TOLERANCE = 1.0, 0.03
@@ -144,8 +144,14 @@ def _warnings(test, answers, run):
     if answers.tension > 0.05 * test.device.peak / test.device.area:
         found.append(
             f"the tied plate pulls at the ground with {answers.tension:.2g} kPa on its way back, and its weight is "
-            f"{test.device.mass * 9.81 / test.device.area:.2g} kPa: one that lies loose leaves the ground there. Rebound "
-            "and settlement are those of a plate that stays; leave out --tied for one that does not."
+            f"{test.device.mass * 9.81 / test.device.area:.2g} kPa: one that lies loose leaves the ground there. "
+            "Rebound and settlement are those of a plate that stays; leave out --tied for one that does not."
+        )
+    if answers.share > INFLUENCE:
+        found.append(
+            f"{test.depths[-1]:.3g} m below, the last point above the base, the ground still moves by "
+            f"{100 * answers.share:.2g} % of the plate's deflection: the base is within the depth of influence; give a "
+            f"larger --depth than {test.depth:g} m"
         )
     last = answers.drops[-1]
     if last.ringing > RINGS:

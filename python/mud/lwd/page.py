@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import base64
 import html
-import math
 import pathlib
 
 import numpy as np
@@ -55,8 +54,9 @@ def _sketch(axes, test: Test):
     if test.water_table is not None and test.water_table < down:
         axes.axhline(-test.water_table, color=COLOURS[0], ls="--", lw=1)
         axes.text(0.1 * a, -test.water_table, "water table", fontsize=8, va="bottom", color=COLOURS[0])
-    elif test.wet and test.suction is not None:
-        axes.text(0.1 * a, -down, f"suction {test.suction:g} kPa", fontsize=8, va="bottom", color=COLOURS[0])
+    elif test.wet:
+        water = f"water table {test.water_table:g} m below" if test.suction is None else f"suction {test.suction:g} kPa"
+        axes.text(0.1 * a, -down, water, fontsize=8, va="bottom", color=COLOURS[0])
     if test.rain:
         axes.text(4 * a, 1.9 * a, f"rain {test.rain:g} mm/h, {test.rain_hours:g} h", fontsize=8, ha="right", va="top")
     axes.set(xlim=(0, 4 * a), ylim=(-down, 2 * a), xlabel="r [m]", ylabel="z [m]", title="input")
@@ -139,14 +139,10 @@ def _profile(axes, measured: Measured):
         depth.append(d)
         share.append((u - u[0]).max() / last)
     axes.plot(share, [-d for d in depth], "o-", color=COLOURS[0], mfc="w")
-    if not math.isnan(measured.answers.influence):
-        axes.axhline(-measured.answers.influence, color="0.6", lw=1)
-        axes.annotate(
-            f"a tenth at {measured.answers.influence:.2g} m",
-            (0.98, -measured.answers.influence),
-            va="bottom",
-            ha="right",
-        )
+    axes.axhline(-measured.answers.influence, color="0.6", lw=1)
+    axes.annotate(
+        f"a tenth at {measured.answers.influence:.2g} m", (0.98, -measured.answers.influence), va="bottom", ha="right"
+    )
     axes.set(xlabel="largest displacement over the plate's [-]", ylabel="z [m]", title="below the centre, last drop")
 
 

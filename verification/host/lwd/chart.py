@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 
+from tools import tables
 from tools.results import folder
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -70,8 +71,7 @@ def main():
         where = output / name.split()[0]
         mud_lwd("test", "--material", "toyoura", "--void-ratio", "0.8", "--suction", "30", *words, "--output", where)
         told = json.loads((where / "results.json").read_text(encoding="utf-8"))
-        with open(where / "drops.csv", encoding="utf-8") as file:
-            drops = list(csv.DictReader(file))
+        drops = tables.rows(where / "drops.csv")
         modulus = [f"{told[key] / 1e3:.{digits}g}" for key, digits in (("modulus", 4), ("error", 2))]
         rows += [(name, *(drop[key] for key in DROP), *modulus) for drop in (drops[0], drops[-1])]
     table(output / "plates.csv", ("plate", *DROP, "modulus_MPa", "modulus_error_MPa"), rows)
