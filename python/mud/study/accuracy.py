@@ -35,6 +35,7 @@ SMALL = 1 / 30  # of what is asked: steps that err less on one mesh are not meas
 FINEST_OF_FILE = 8  # times the cells of a mesh of a file: mud_host splits triangles thrice
 SOLVE_SHARE = 1 / 3  # of what is asked: from here on Newton's method and the stress integration are tightened
 
+NO_ANSWER = -1  # a run whose answers do not change, or are not there
 REFUSED = (2, 10, 11, 12, 13)  # exit codes of mud_host: what the scene says cannot be run
 
 MET, LOCALISED, NOT_CONVERGING, BUDGET, FAILS = "met", "localised", "does not converge", "budget used up", "runs fail"
@@ -119,6 +120,7 @@ class Study:
         if not before or set(known_steps) != set(before.errors):
             rough = self.run(half, loose)
         coarse = self.run(half, tolerance)
+        self.answers(coarse)
         if not self.solve:
             self.measure_solve(half, loose)
         fine = self.run(fineness, tolerance, keep=True)
@@ -130,20 +132,18 @@ class Study:
             mesh, order = self.of_mesh(coarse, fine, steps, name)
             newton, stress = self.solve.get(name, (max((x for x, _ in self.solve.values()), default=0.0), 0.0))
             errors[name] = Error(fine.histories.change(name), steps, mesh, newton, stress, order)
-        if not errors:
-            raise Failed(
-                "no named point, plate or goal changes in the runs; give the scene a &point where something moves"
-            )
         self.pairs.append(Pair(fineness, tolerance, errors, fine))
 
     def answers(self, run: Run) -> list[str]:
-        if not self.goals:
-            return run.histories.answers()
         for goal in self.goals:
             if not run.histories.has(goal):
                 there = ", ".join([*run.histories.values, *run.histories.forces])
-                raise Failed(f"there is no answer {goal}; there are {there}")
-        return [g for g in self.goals if run.histories.change(g) > 0]
+                raise Failed(f"there is no answer {goal}; there are {there}", NO_ANSWER)
+        names = [g for g in self.goals if run.histories.change(g) > 0] if self.goals else run.histories.answers()
+        if not names:
+            words = "no named point, plate or goal changes in the runs; give the scene a &point where something moves"
+            raise Failed(words, NO_ANSWER)
+        return names
 
     def of_steps(self, rough, coarse, name):
         """Error by the steps, from tolerances on the coarser mesh. Where other things keep steps short (dt_max, kinks,
@@ -245,6 +245,8 @@ class Study:
                 return ""
             except Failed as failure:
                 first = first or failure
+                if failure.code == NO_ANSWER:
+                    break
         if first.code in REFUSED:
             raise InputError(str(first))
         return str(first)

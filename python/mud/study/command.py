@@ -184,7 +184,7 @@ def main(words: list[str] | None = None) -> int:
         scene = Scene(args.scene, folder, args.host, args.budget, args.quiet)
         folder.mkdir(parents=True, exist_ok=True)
         return {"accuracy": accuracy, "price": price, "effects": effects, "run": run}[args.command](scene, args)
-    except InputError as problem:
+    except (InputError, OSError) as problem:
         print(f"mud_study: {problem}", file=sys.stderr)
         return EXIT_INPUT
     except KeyboardInterrupt:

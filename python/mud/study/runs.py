@@ -243,12 +243,13 @@ class Scene:
             self.say(" stopped")
             raise BudgetUsedUp
         self.say(f" {used:.3g} s")
+        lines = (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()
         told = {
             "origin": self._origin,
             "words": words,
             "seconds": used,
             "code": process.returncode,
-            "said": (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip()[-500:],
+            "said": lines[-1] if lines else "",
             "most": min(most, 1e9),
         }
         if process.returncode >= 0 or process.returncode == CUT:  # one that was killed is repeated
