@@ -12,14 +12,14 @@ Their sum is the error told. Pairs are refined until the sum of every answer is 
 
 from __future__ import annotations
 
-import csv
+import contextlib
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import InputError
 from .histories import difference, distance
-from .runs import LOOSEST, BudgetUsedUp, Failed, Key, Run, Scene
+from .runs import LOOSEST, BudgetUsedUp, Failed, Key, Run, Scene, write_csv
 
 HALF_DECADE = 10**0.5
 NOISE = 4 / 3  # differences that fall by less from mesh to mesh show no limit
@@ -240,7 +240,8 @@ class Study:
                 continue
             try:
                 if coarse == 2 and fineness == 1:
-                    self._try(0.25, tolerance)
+                    with contextlib.suppress(Failed):  # for the order of the mesh
+                        self.run(0.25, tolerance)
                 self.measure(fineness, min(times * tolerance, LOOSEST / HALF_DECADE))
                 return ""
             except Failed as failure:
@@ -250,13 +251,6 @@ class Study:
         if first.code in REFUSED:
             raise InputError(str(first))
         return str(first)
-
-    def _try(self, *key):
-        """A run for the order of the mesh, which need not come to its end."""
-        try:
-            self.run(*key)
-        except Failed:
-            pass
 
     def _stands_still(self):
         """Whether the last refinements of one kind made the error of the worst answer fall by less than a quarter, or
@@ -406,8 +400,5 @@ def sum_of(e: Error) -> str:
 def write_table(path, pair: Pair):
     """accuracy.csv: the largest first; change in the unit of the answer, errors as shares of it."""
     rows = sorted(pair.errors.items(), key=lambda item: -item[1].total)
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(("answer", "change", "steps", "mesh", "newton", "stress", "total"))
-        for name, e in rows:
-            writer.writerow((name, *(f"{x:.4g}" for x in (e.change, e.steps, e.mesh, e.newton, e.stress, e.total))))
+    write_csv(path, ("answer", "change", "steps", "mesh", "newton", "stress", "total"),
+              [(name, e.change, e.steps, e.mesh, e.newton, e.stress, e.total) for name, e in rows])
