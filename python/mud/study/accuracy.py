@@ -12,14 +12,14 @@ Their sum is the error told. Pairs are refined until the sum of every answer is 
 
 from __future__ import annotations
 
-import csv
+import contextlib
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..errors import InputError
 from .histories import difference, distance
-from .runs import LOOSEST, BudgetUsedUp, Failed, Key, Run, Scene
+from .runs import LOOSEST, BudgetUsedUp, Failed, Key, Run, Scene, write_csv
 
 HALF_DECADE = 10**0.5
 NOISE = 4 / 3  # differences that fall by less from mesh to mesh show no limit
@@ -35,6 +35,7 @@ SMALL = 1 / 30  # of what is asked: steps that err less on one mesh are not meas
 FINEST_OF_FILE = 8  # times the cells of a mesh of a file: mud_host splits triangles thrice
 SOLVE_SHARE = 1 / 3  # of what is asked: from here on Newton's method and the stress integration are tightened
 
+NO_ANSWER = -1  # a run whose answers do not change, or are not there
 REFUSED = (2, 10, 11, 12, 13)  # exit codes of mud_host: what the scene says cannot be run
 
 MET, LOCALISED, NOT_CONVERGING, BUDGET, FAILS = "met", "localised", "does not converge", "budget used up", "runs fail"
@@ -119,6 +120,7 @@ class Study:
         if not before or set(known_steps) != set(before.errors):
             rough = self.run(half, loose)
         coarse = self.run(half, tolerance)
+        self.answers(coarse)
         if not self.solve:
             self.measure_solve(half, loose)
         fine = self.run(fineness, tolerance, keep=True)
@@ -130,20 +132,18 @@ class Study:
             mesh, order = self.of_mesh(coarse, fine, steps, name)
             newton, stress = self.solve.get(name, (max((x for x, _ in self.solve.values()), default=0.0), 0.0))
             errors[name] = Error(fine.histories.change(name), steps, mesh, newton, stress, order)
-        if not errors:
-            raise Failed(
-                "no named point, plate or goal changes in the runs; give the scene a &point where something moves"
-            )
         self.pairs.append(Pair(fineness, tolerance, errors, fine))
 
     def answers(self, run: Run) -> list[str]:
-        if not self.goals:
-            return run.histories.answers()
         for goal in self.goals:
             if not run.histories.has(goal):
                 there = ", ".join([*run.histories.values, *run.histories.forces])
-                raise Failed(f"there is no answer {goal}; there are {there}")
-        return [g for g in self.goals if run.histories.change(g) > 0]
+                raise Failed(f"there is no answer {goal}; there are {there}", NO_ANSWER)
+        names = [g for g in self.goals if run.histories.change(g) > 0] if self.goals else run.histories.answers()
+        if not names:
+            words = "no named point, plate or goal changes in the runs; give the scene a &point where something moves"
+            raise Failed(words, NO_ANSWER)
+        return names
 
     def of_steps(self, rough, coarse, name):
         """Error by the steps, from tolerances on the coarser mesh. Where other things keep steps short (dt_max, kinks,
@@ -240,21 +240,17 @@ class Study:
                 continue
             try:
                 if coarse == 2 and fineness == 1:
-                    self._try(0.25, tolerance)
+                    with contextlib.suppress(Failed):  # for the order of the mesh
+                        self.run(0.25, tolerance)
                 self.measure(fineness, min(times * tolerance, LOOSEST / HALF_DECADE))
                 return ""
             except Failed as failure:
                 first = first or failure
+                if failure.code == NO_ANSWER:
+                    break
         if first.code in REFUSED:
             raise InputError(str(first))
         return str(first)
-
-    def _try(self, *key):
-        """A run for the order of the mesh, which need not come to its end."""
-        try:
-            self.run(*key)
-        except Failed:
-            pass
 
     def _stands_still(self):
         """Whether the last refinements of one kind made the error of the worst answer fall by less than a quarter, or
@@ -404,8 +400,5 @@ def sum_of(e: Error) -> str:
 def write_table(path, pair: Pair):
     """accuracy.csv: the largest first; change in the unit of the answer, errors as shares of it."""
     rows = sorted(pair.errors.items(), key=lambda item: -item[1].total)
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(("answer", "change", "steps", "mesh", "newton", "stress", "total"))
-        for name, e in rows:
-            writer.writerow((name, *(f"{x:.4g}" for x in (e.change, e.steps, e.mesh, e.newton, e.stress, e.total))))
+    write_csv(path, ("answer", "change", "steps", "mesh", "newton", "stress", "total"),
+              [(name, e.change, e.steps, e.mesh, e.newton, e.stress, e.total) for name, e in rows])

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import pathlib
 import shlex
@@ -15,7 +14,7 @@ from ..errors import InputError
 from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
 from .effects import LEAST_RUN, SHARE, Effects, Silent, write_scene
 from .pictures import accuracy_picture, effects_picture, price_picture
-from .runs import BudgetUsedUp, Failed, Scene
+from .runs import BudgetUsedUp, Failed, Scene, write_csv
 
 EXIT_INPUT, EXIT_INTERRUPTED = 2, 130
 LEVELS = (0.1, 0.03, 0.01)  # of price
@@ -114,10 +113,8 @@ def price(scene: Scene, args) -> int:
             recipes.append(recipe(scene, study.key(*expected[:2])) if expected else "")
     tell(study)
     if study.pairs:
-        with open(scene.folder / "price.csv", "w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow(("accuracy", "state", "fineness", "step_tolerance", "total", "seconds"))
-            table.writerows([[x if isinstance(x, str) else f"{x:.4g}" for x in row] for row in rows])
+        head = ("accuracy", "state", "fineness", "step_tolerance", "total", "seconds")
+        write_csv(scene.folder / "price.csv", head, rows)
         price_picture(scene.folder / "price.png", study, rows)
         for (level, state, _, _, total, seconds), command in zip(rows, recipes):
             known = "measured" if state == MET else "expected"
@@ -184,7 +181,7 @@ def main(words: list[str] | None = None) -> int:
         scene = Scene(args.scene, folder, args.host, args.budget, args.quiet)
         folder.mkdir(parents=True, exist_ok=True)
         return {"accuracy": accuracy, "price": price, "effects": effects, "run": run}[args.command](scene, args)
-    except InputError as problem:
+    except (InputError, OSError) as problem:
         print(f"mud_study: {problem}", file=sys.stderr)
         return EXIT_INPUT
     except KeyboardInterrupt:

@@ -10,7 +10,6 @@ scene has it. The key `without` of the host takes effects out, so that nothing h
 from __future__ import annotations
 
 import copy
-import csv
 import hashlib
 import math
 import subprocess
@@ -21,7 +20,7 @@ import numpy as np
 from ..errors import InputError
 from ..host import HostRun
 from .histories import between
-from .runs import DEFAULT_TOLERANCE, Failed, Run, Scene, files_of, list_of, processor
+from .runs import DEFAULT_TOLERANCE, Failed, Run, Scene, files_of, list_of, processor, write_csv
 
 EARTH = 9.81  # [m/s2]
 FIELDS = ("u", "u-p_w", "u-p_w-p_c")
@@ -287,12 +286,12 @@ class Effects:
     def _try(self, rows, base) -> list[Effect]:
         """A pilot without each effect; those that are to go."""
         out, steps, pilot = base
-        room = self.left() / max(pilot.seconds, 1e-9) - 1  # one is kept for all that are to go
-        if len(rows) > room:
-            rows = sorted(rows, key=lambda r: r.by_hand)
-            for row in rows[max(0, int(room)):]:
-                row.why = OVER_SHARE
-            rows = rows[: max(0, int(room))]
+        # One is kept for all that are to go.
+        room = max(0, int(min(len(rows), self.left() / max(pilot.seconds, 1e-9) - 1)))
+        rows = sorted(rows, key=lambda r: r.by_hand and room < len(rows))
+        for row in rows[room:]:
+            row.why = OVER_SHARE
+        rows = rows[:room]
         for row in rows:
             try:
                 found = self.pilot([*out, row], steps, MOST_TIMES * pilot.seconds + 1)
@@ -374,10 +373,6 @@ class Effects:
 
     def write(self, path):
         """effects.csv."""
-        number = lambda x: "" if x is None else f"{x:.4g}"  # noqa: E731
-        with open(path, "w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow(("effect", "on", "by", "influence", "answer", "cost", "remark"))
-            for r in self.rows:
-                table.writerow((r.name, "on" if r.on else "off", "hand" if r.by_hand else "pilot", number(r.influence),
-                                r.answer, number(r.processor), r.why))
+        write_csv(path, ("effect", "on", "by", "influence", "answer", "cost", "remark"),
+                  [(r.name, "on" if r.on else "off", "hand" if r.by_hand else "pilot", r.influence, r.answer,
+                    r.processor, r.why) for r in self.rows])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import json
 import math
@@ -243,12 +244,13 @@ class Scene:
             self.say(" stopped")
             raise BudgetUsedUp
         self.say(f" {used:.3g} s")
+        lines = (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()
         told = {
             "origin": self._origin,
             "words": words,
             "seconds": used,
             "code": process.returncode,
-            "said": (folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip()[-500:],
+            "said": lines[-1] if lines else "",
             "most": min(most, 1e9),
         }
         if process.returncode >= 0 or process.returncode == CUT:  # one that was killed is repeated
@@ -269,6 +271,14 @@ def files_of(groups, folder) -> list[tuple]:
     all_groups = [group for name in dict.fromkeys(groups) for group in list_of(groups, name)]
     named = [(g, k, pathlib.Path(folder) / str(g[k])) for g in all_groups for k in FILES if k in g]
     return [one for one in named if one[2].is_file()]
+
+
+def write_csv(path, head, rows):
+    """A table; numbers with four digits, None as nothing."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(head)
+        table.writerows([["" if x is None else x if isinstance(x, str) else f"{x:.4g}" for x in row] for row in rows])
 
 
 def _limit(most, mask):

@@ -85,8 +85,8 @@ def row(scene, budget, seconds, folder, host=""):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*")
-    parser.add_argument("--budget", type=float, default=12.0, help="processor time of a study [s]")
-    parser.add_argument("--truth", type=float, default=30.0, help="of a truth [s]")
+    parser.add_argument("--budget", type=float, default=60.0, help="processor time of a study [s]")
+    parser.add_argument("--truth", type=float, default=40.0, help="of a truth [s]")
     parser.add_argument("--work", type=pathlib.Path)
     args = parser.parse_args()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
