@@ -7,7 +7,7 @@ module material_mud
    use key_schema, only: key_t, NONE
    use library_tables, only: property_count, property_index, property_name, property_range, range_for, statev_index, &
                              statev_name
-   use material_point, only: range_t, material_t, response_t, report_t, remark_t, NAME_LENGTH, NO_PRESET
+   use material_point, only: range_t, material_t, response_t, batch_report_t, remark_t, NAME_LENGTH, NO_PRESET
    use retention_curves, only: saturation_t
    use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepared_statev, mud_prepare, mud_init, &
                             mud_update, &
@@ -248,7 +248,7 @@ contains
       logical, intent(in) :: with_tangent
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
-      type(report_t), intent(out) :: report
+      type(batch_report_t), intent(out) :: report
       type(mud_report) :: of_point
       type(mud_blocks) :: blocks
       real(wp) :: stress_(6), state_(size(state, 1))
@@ -287,7 +287,7 @@ contains
    !> Adds the work of a point; what a failure is about is that of the last one.
    pure subroutine add_up(report, sums)
       type(mud_report), intent(in) :: report
-      type(report_t), intent(inout) :: sums
+      type(batch_report_t), intent(inout) :: sums
 
       sums%n_rate = sums%n_rate + report%n_rate
       sums%n_substep = sums%n_substep + report%n_substep
@@ -306,7 +306,7 @@ contains
 
    subroutine message(self, report, text)
       class(mud_t), intent(in) :: self
-      type(report_t), intent(in) :: report
+      type(batch_report_t), intent(in) :: report
       character(*), intent(out) :: text
       type(mud_report) :: of_library
       character(BUFFER) :: raw

@@ -10,7 +10,7 @@ module material_point
    use texts, only: short
    implicit none (type, external)
    private
-   public :: material_t, material_slot_t, response_t, report_t, remark_t, state_index, swollen
+   public :: material_t, material_slot_t, response_t, batch_report_t, remark_t, state_index, swollen
    public :: lost_pressure, PRESSURE_LOST, CYCLES_UNTRUSTED, MANY_REVERSALS, range_t, untested
    public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
 
@@ -34,7 +34,7 @@ module material_point
    integer, parameter :: MANY_REVERSALS = 20
 
    !> Report of a batch of updates.
-   type :: report_t
+   type :: batch_report_t
       integer :: code = 0         !< 0: done; negative: the caller's mistake; positive: a hard increment.
       integer :: point = 0        !< The point that failed; those behind it were not updated.
       real(wp) :: factor = 1.0_wp !< Suggested factor on the increment, below 1 after a failure.
@@ -46,7 +46,7 @@ module material_point
       integer :: subject = 0, entry = 0    !< Subject of a failure, by the law's own count.
       real(wp) :: value = 0.0_wp, lower = 0.0_wp, upper = 0.0_wp   !< Offending value and its allowed range.
       real(wp) :: reached = 1.0_wp         !< Share of the increment that was integrated.
-   end type report_t
+   end type batch_report_t
 
    !> Answers of a batch, as many columns as there are points. Tangent blocks only where they were asked for. No
    !> component has a default: it would be paid for with the whole of the type at every batch.
@@ -129,7 +129,7 @@ module material_point
       !> point that fails, whose new state and answers are of no use.
       subroutine update_i(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
                           report)
-         import :: material_t, response_t, report_t, wp
+         import :: material_t, response_t, batch_report_t, wp
          class(material_t), intent(in) :: self
          integer, intent(in) :: n                                !< 1 .. MOST_POINTS
          real(wp), intent(in), contiguous :: stress(:, :)        !< (6, n) [kPa]
@@ -140,14 +140,14 @@ module material_point
          logical, intent(in) :: with_tangent
          type(response_t), intent(inout) :: response
          real(wp), intent(inout), contiguous :: new_state(:, :)  !< State at the end, as state.
-         type(report_t), intent(out) :: report
+         type(batch_report_t), intent(out) :: report
       end subroutine update_i
 
       !> A sentence about a failed batch.
       subroutine message_i(self, report, text)
-         import :: material_t, report_t
+         import :: material_t, batch_report_t
          class(material_t), intent(in) :: self
-         type(report_t), intent(in) :: report
+         type(batch_report_t), intent(in) :: report
          character(*), intent(out) :: text
       end subroutine message_i
 
@@ -261,7 +261,7 @@ contains
       real(wp), intent(in) :: stress(6), state(:), suction   !< [kPa], n_state or more, [kPa]
       real(wp), intent(out) :: tangent(6, 6)
       type(response_t) :: response
-      type(report_t) :: report
+      type(batch_report_t) :: report
       real(wp) :: new_state(size(state), 1), no_strain(6, 1)
 
       tangent = 0.0_wp

@@ -9,7 +9,7 @@ module material_umat
    use files, only: folder_of
    use key_schema, only: key_t, text_of, texts_of, number_of, numbers_of, word_is, line_of, REQUIRED, NONE, UNBOUNDED
    use kinds, only: wp
-   use material_point, only: material_t, response_t, report_t, remark_t, swollen, NAME_LENGTH
+   use material_point, only: material_t, response_t, batch_report_t, remark_t, swollen, NAME_LENGTH
    use retention_curves, only: saturation_t
    use namelists, only: group_t
    use texts, only: whole, short
@@ -185,7 +185,7 @@ contains
       real(wp), intent(inout) :: state(:)
       character(*), intent(out) :: text
       type(response_t) :: response
-      type(report_t) :: report
+      type(batch_report_t) :: report
       type(saturation_t) :: sat
       real(wp) :: before(self%n_state, 1), after(self%n_state, 1), at_rest(6, 1), stress0(6, 1)
 
@@ -214,7 +214,7 @@ contains
       logical, intent(in) :: with_tangent
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
-      type(report_t), intent(out) :: report
+      type(batch_report_t), intent(out) :: report
       integer :: g
 
       do g = 1, n
@@ -235,7 +235,7 @@ contains
       integer, intent(in) :: g
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous, target :: state(:)
-      type(report_t), intent(inout) :: report
+      type(batch_report_t), intent(inout) :: report
       real(wp) :: stress_(6), ddsdde(self%components, self%components), strain0(6), d_strain(6), pnewdt, e, p_c, shift
       real(wp) :: sse, spd, scd, rpl, ddsddt(6), drplde(6), drpldt, time(2), none(3)
       integer(c_int) :: kstep(4), kinc
@@ -333,7 +333,7 @@ contains
 
    subroutine message(self, report, text)
       class(umat_t), intent(in) :: self
-      type(report_t), intent(in) :: report
+      type(batch_report_t), intent(in) :: report
       character(*), intent(out) :: text
 
       text = trim(self%symbol)//' of '//trim(self%library)

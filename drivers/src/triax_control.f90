@@ -8,7 +8,7 @@ module triax_control
    use dense, only: solve, outer
    use triax_air, only: closed_air_t, air_now_t, closing, air_of
    use triax_stage, only: test_stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
-   use material_point, only: MOST_GUARDS, report_t
+   use material_point, only: MOST_GUARDS, batch_report_t
    use triax_point, only: soil_t, point_t, tangent_t, update_point, save_update, update_sentence, void_ratio, &
                           saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
    implicit none (type, external)
@@ -225,7 +225,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(point_t) :: after
       type(tangent_t) :: tangent
-      type(report_t) :: report
+      type(batch_report_t) :: report
       real(wp) :: progress, x(7), residual(7), last_residual(7), slope(7, 7), step(7), error, stiffness
       integer :: iteration
       logical :: good

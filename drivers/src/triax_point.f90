@@ -5,7 +5,7 @@
 module triax_point
    use faults, only: fault_t, raise, EXIT_INPUT, EXIT_OUTPUT
    use kinds, only: wp
-   use material_point, only: material_t, response_t, report_t, state_index, WITH_TANGENT
+   use material_point, only: material_t, response_t, batch_report_t, state_index, WITH_TANGENT
    use texts, only: whole
    use triax_air, only: air_t
    implicit none (type, external)
@@ -115,7 +115,7 @@ contains
       real(wp), intent(in) :: suction        !< Increment [unit of stress of the law].
       type(point_t), intent(inout) :: after
       type(tangent_t), intent(out) :: tangent
-      type(report_t), intent(out) :: report
+      type(batch_report_t), intent(out) :: report
       type(response_t) :: response
       real(wp) :: tension(6, 1), strain_(6, 1)
 
@@ -160,7 +160,7 @@ contains
    !> The law's sentence for a report.
    function update_sentence(soil, report) result(sentence)
       type(soil_t), intent(in) :: soil
-      type(report_t), intent(in) :: report
+      type(batch_report_t), intent(in) :: report
       character(:), allocatable :: sentence
       character(BUFFER) :: text
 

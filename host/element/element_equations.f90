@@ -4,11 +4,11 @@ module element_equations
    use wall_clock, only: clock, add_elapsed
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
-   use material_point, only: material_t, response_t, report_t, MOST_POINTS
+   use material_point, only: material_t, response_t, batch_report_t, MOST_POINTS
    use element_sums, only: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, &
                            residual_of, matrix_of
-   use porous_domain, only: domain_t, region_t, state_t, gauss_t, mixture_density, given_pressures_at, gravity_on, &
-                            COUPLED
+   use porous_domain, only: domain_t, region_t, model_state_t, gauss_t, mixture_density, given_pressures_at, &
+                            gravity_on, COUPLED
    use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
                              U
    use generalised_alpha, only: scheme_t
@@ -45,7 +45,7 @@ module element_equations
       integer :: replaced = 0                    !< Number of points whose tangent was replaced.
       logical :: with_change = .false.            !< Whether `change` is wanted.
       real(wp) :: change(MAX_DOF) = 0.0_wp       !< Displacements: what the step changes of r, inertia counted whole.
-      type(report_t) :: bad                      !< Report of the material where a point failed.
+      type(batch_report_t) :: bad                      !< Report of the material where a point failed.
       integer :: bad_point = 0                   !< Number of that point, 0: none.
       integer :: rate_evaluations = 0
       real(wp) :: seconds = 0.0_wp               !< In the material.
@@ -70,8 +70,8 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old
-      type(state_t), intent(inout) :: new
+      type(model_state_t), intent(in) :: old
+      type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
       type(slopes_t), intent(inout) :: slopes   !< Slopes of all points; those of the element are read or written.
       type(element_t), intent(inout) :: out
@@ -89,7 +89,7 @@ contains
       do g = 1, domain%rule
          ! Also where it is not a number.
          if (all(abs(k(g)%strain) <= 1.0_wp)) cycle
-         out%bad = report_t(code=STRAIN_TOO_LARGE)
+         out%bad = batch_report_t(code=STRAIN_TOO_LARGE)
          out%bad_point = g
          return
       end do
@@ -109,8 +109,8 @@ contains
    subroutine update_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
-      type(state_t), intent(in), target :: old
-      type(state_t), intent(inout), target :: new
+      type(model_state_t), intent(in), target :: old
+      type(model_state_t), intent(inout), target :: new
       real(wp), intent(in) :: strain(6, MOST_POINTS), suction(MOST_POINTS), d_suction(MOST_POINTS)
       logical, intent(in) :: with_tangent
       type(slopes_t), intent(inout) :: slopes
@@ -144,7 +144,7 @@ contains
    contains
       subroutine ask(law)
          class(material_t), intent(in) :: law
-         type(report_t) :: report
+         type(batch_report_t) :: report
          real(wp) :: t0
 
          t0 = clock()
@@ -168,7 +168,7 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       type(kinematics_t), intent(inout) :: k(:)   !< Kinematics of the points, as many as the element has or more.
       type(nodes_t) :: nodes
       real(wp) :: gravity
@@ -197,7 +197,7 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       type(nodes_t), intent(inout) :: nodes
       real(wp) :: p_dot(6)
       integer :: node(6), carrier(6), f
@@ -227,8 +227,8 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(kinematics_t), intent(in) :: k(:)
       type(response_t), intent(in) :: material
-      type(state_t), intent(in) :: old
-      type(state_t), intent(inout) :: new
+      type(model_state_t), intent(in) :: old
+      type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
       type(skeleton_t) :: skeleton

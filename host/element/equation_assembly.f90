@@ -8,8 +8,8 @@ module equation_assembly
    use degrees_of_freedom, only: dofs_t
    use element_equations, only: element_t, compute_element, element_size
    use tangent_fallback, only: NO_FALLBACK
-   use material_point, only: report_t
-   use porous_domain, only: domain_t, state_t, is_present, keep_element_state, COUPLED
+   use material_point, only: batch_report_t
+   use porous_domain, only: domain_t, model_state_t, is_present, keep_element_state, COUPLED
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
    use unknown_fields, only: DISPLACEMENTS, AT_P_W
@@ -41,7 +41,7 @@ module equation_assembly
       logical, allocatable :: air(:)                 !< Nodes whose air pressure is prescribed.
       ! Outcome.
       integer :: bad_element = 0, bad_point = 0
-      type(report_t) :: bad
+      type(batch_report_t) :: bad
       integer :: rate_evaluations = 0
       real(wp) :: material = 0.0_wp                  !< Share of the material in the time of the last pass.
    end type assembly_t
@@ -81,8 +81,8 @@ contains
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old
-      type(state_t), intent(inout) :: new
+      type(model_state_t), intent(in) :: old
+      type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
       type(assembly_t), intent(inout) :: assembly
       integer, allocatable :: bad_point(:), rate_evaluations(:)

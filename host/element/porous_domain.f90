@@ -13,7 +13,7 @@ module porous_domain
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: domain_t, region_t, fluids_t, gauss_t, state_t, source_i, prepare_domain, new_state_of, copy_state, &
+   public :: domain_t, region_t, fluids_t, gauss_t, model_state_t, source_i, prepare_domain, new_state_of, copy_state, &
              take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
              keep_element_state, exchange_state
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
@@ -97,7 +97,7 @@ module porous_domain
    end type domain_t
 
    !> Everything that one time step carries to the next.
-   type :: state_t
+   type :: model_state_t
       real(wp) :: time = 0.0_wp
       real(wp) :: gravity = 0.0_wp            !< At this time, towards -z [m/s2].
       real(wp), allocatable :: x(:, :)        !< (FIELDS, nodes) unknowns
@@ -118,7 +118,7 @@ module porous_domain
       !> Laws of the regions in the step that ends with this state, where laws change with time, else not
       !> allocated: made for every step, docs/theory/host.md section 15. (regions)
       type(material_slot_t), allocatable :: laws(:)
-   end type state_t
+   end type model_state_t
 contains
    !> Geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault
    !> EXIT_ELEMENT: an element is inverted, or an axisymmetric mesh has a point at r <= 0.
@@ -240,7 +240,7 @@ contains
    !> A state of the right size, everything zero and saturated. Void ratios are those of the regions.
    function new_state_of(domain) result(state)
       type(domain_t), intent(in) :: domain
-      type(state_t) :: state
+      type(model_state_t) :: state
       integer :: nodes, points, e
 
       nodes = size(domain%mesh%x, 2)
@@ -285,7 +285,7 @@ contains
 
    !> Whether an element is part of the ground.
    pure logical function is_present(state, element)
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       integer, intent(in) :: element
 
       is_present = .true.
@@ -294,7 +294,7 @@ contains
 
    !> Gravity on an element, towards -z: that of new ground grows over its first stage [m/s2].
    pure real(wp) function gravity_on(state, element) result(gravity)
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       integer, intent(in) :: element
 
       gravity = state%gravity
@@ -306,8 +306,8 @@ contains
    subroutine keep_element_state(domain, element, old, new)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
-      type(state_t), intent(in) :: old
-      type(state_t), intent(inout) :: new
+      type(model_state_t), intent(in) :: old
+      type(model_state_t), intent(inout) :: new
       integer :: first, last
 
       first = (element - 1)*domain%rule + 1
@@ -324,7 +324,7 @@ contains
    !> A state that is accepted takes the place of the one before. What is large changes hands: `new` is left with
    !> stresses and state variables of the step before, all of which a pass by the material writes.
    subroutine take_over(new, state)
-      type(state_t), intent(inout) :: new, state
+      type(model_state_t), intent(inout) :: new, state
       real(wp), allocatable :: stress(:, :), variables(:)
 
       call move_alloc(state%stress, stress)
@@ -338,8 +338,8 @@ contains
 
    !> Copies without allocating anew. Both must have the same extents.
    subroutine copy_state(from, to)
-      type(state_t), intent(in) :: from
-      type(state_t), intent(inout) :: to
+      type(model_state_t), intent(in) :: from
+      type(model_state_t), intent(inout) :: to
 
       to%stress(:, :) = from%stress
       to%state(:) = from%state
@@ -348,8 +348,8 @@ contains
 
    !> All but stresses and state variables of the points.
    subroutine copy_small(from, to)
-      type(state_t), intent(in) :: from
-      type(state_t), intent(inout) :: to
+      type(model_state_t), intent(in) :: from
+      type(model_state_t), intent(inout) :: to
 
       to%time = from%time
       to%gravity = from%gravity
@@ -370,7 +370,7 @@ contains
    !> Exchanges a state with an archive. Gravity, parts of the ground and laws follow from the scene and the time.
    subroutine exchange_state(domain, state, archive)
       type(domain_t), intent(in) :: domain
-      type(state_t), intent(inout) :: state
+      type(model_state_t), intent(inout) :: state
       class(archive_t), intent(inout) :: archive
       real(wp), allocatable :: table(:, :)
       integer :: variables(size(domain%regions)), i, rows

@@ -6,7 +6,7 @@ module boundary_conditions
    use generalised_alpha, only: scheme_t, has_rates
    use limited_pressures, only: begin_sides
    use model_types, only: model_t, factor_at, fix_t
-   use porous_domain, only: state_t
+   use porous_domain, only: model_state_t
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: acts_in, stage_t, PRESCRIBED_P_A
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
@@ -139,7 +139,7 @@ contains
       type(stage_t), intent(in) :: stage
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: state   !< Before the step.
+      type(model_state_t), intent(in) :: state   !< Before the step.
       type(constraint_t), intent(inout) :: constraint
       real(wp) :: a
       integer :: i, k, at

@@ -11,7 +11,7 @@ module contact_setup
    use contact_interfaces, only: contacts_t, surface_t, plate_link_t, surface_of, new_interface, tie_to_plate, &
                                  plate_surface
    use contact_plate, only: plate_motion_t
-   use porous_domain, only: state_t
+   use porous_domain, only: model_state_t
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
    private
@@ -83,7 +83,7 @@ contains
    !> iteration on. docs/theory/contact.md section 4. Sets u_z of plates with a face of their own that looks down.
    subroutine place_heavy_plates(model, state)
       type(model_t), intent(in) :: model
-      type(state_t), intent(inout) :: state
+      type(model_state_t), intent(inout) :: state
       real(wp) :: area, load, loads(3)
       integer :: i
 

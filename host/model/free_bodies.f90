@@ -13,7 +13,7 @@ module free_bodies
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z
    implicit none (type, external)
    private
-   public :: check_bodies, note_bodies_on_contact
+   public :: check_bodies
 
    integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
    character(*), parameter :: MOTIONS(TURN) = [character(18) :: 'moving along r (x)', 'moving along z (y)', 'turning']
@@ -22,55 +22,65 @@ module free_bodies
    real(wp), parameter :: NEAR_SHARE = 1.0e-5_wp
    integer, parameter :: MOST_NAMES = 3   !< Number of groups by which a body is named.
 contains
-   !> Refuses a static or quasi-static stage in which neither a support nor a contact holds a body. Fault
-   !> EXIT_FREE_BODY: it names a group of the body and the motion.
+   !> Refuses a static or quasi-static stage in which neither a support nor a contact holds a body, and notes which
+   !> bodies contacts alone hold. Fault EXIT_FREE_BODY: it names a group of the body and the motion.
    subroutine check_bodies(model, fault)
-      type(model_t), intent(in) :: model
+      type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
-      integer, allocatable :: body_of(:)
-      logical, allocatable :: touched(:)
-      integer :: s, b, i, motion
+      character(:), allocatable :: free
+      integer :: s
 
-      if (.not. any(.not. has_inertia(model%stages%kind))) return
-      body_of = bodies_of(model)
+      allocate (model%on_contact(size(model%stages)))
       do s = 1, size(model%stages)
-         associate (stage => model%stages(s))
-            if (has_inertia(stage%kind)) cycle
-            touched = in_contact(model, stage)
-            do b = 1, size(body_of)
-               ! The first node of a body stands for it; one without an element has no stiffness, and no equation.
-               if (body_of(b) /= b) cycle
-               if (any(touched .and. body_of == b)) cycle
-               motion = free_motion(model, stage, body_of == b)
-               if (motion > 0) call refuse(stage, described(model, body_of == b)//' against '// &
-                                           trim(MOTIONS(motion))//'; add a &fix of '//trim(REMEDIES(motion))// &
-                                           ' on a group of it, or a contact.')
-            end do
-            do i = 1, size(model%plates)
-               associate (plate => model%plates(i))
-                  if (plate%group > 0) cycle
-                  if (plate%turns .and. .not. holds_along_r(model, stage, i)) then
-                     call refuse(stage, 'the plate '''//trim(plate%name)//''' against moving along r (x): no '// &
-                                 '&contact of it that acts has friction; give one friction, or a &fix of u_r with '// &
-                                 'the plate as its group.')
-                  else if (.not. (touched(plate%node) .or. is_fixed(model, stage, AT_U_Z, plate%node))) then
-                     call refuse(stage, 'the plate '''//trim(plate%name)//''': no &contact of it acts; add one, or '// &
-                                 'a &fix of u_z with the plate as its group.')
-                  end if
-               end associate
-            end do
-         end associate
-         if (fault%code /= 0) return
+         call look_for_bodies(model, model%stages(s), free, model%on_contact(s)%words)
+         if (free /= '' .and. fault%code == 0) call raise(fault, EXIT_FREE_BODY, 'Stage '// &
+            trim(model%stages(s)%name)//': nothing holds '//free)
       end do
-   contains
-      !> The first sentence stays.
-      subroutine refuse(stage, text)
-         type(stage_t), intent(in) :: stage
-         character(*), intent(in) :: text
-
-         if (fault%code == 0) call raise(fault, EXIT_FREE_BODY, 'Stage '//trim(stage%name)//': nothing holds '//text)
-      end subroutine refuse
    end subroutine check_bodies
+
+   !> Ends of sentences about bodies that no support of a stage holds: the first of those that no contact holds either,
+   !> with the remedy, and all that a contact may hold. Empty if there are none, as in a stage with inertia.
+   subroutine look_for_bodies(model, stage, free, on_contact)
+      type(model_t), intent(in) :: model
+      type(stage_t), intent(in) :: stage
+      character(:), allocatable, intent(out) :: free, on_contact
+      integer :: body_of(size(model%domain%mesh%x, 2)), b, i, motion
+      logical :: touched(size(model%domain%mesh%x, 2)), fixed
+
+      free = ''
+      on_contact = ''
+      if (has_inertia(stage%kind)) return
+      body_of = bodies_of(model)
+      touched = in_contact(model, stage)
+      do b = 1, size(body_of)
+         ! The first node of a body stands for it; one without an element has no stiffness, and no equation.
+         if (body_of(b) /= b) cycle
+         motion = free_motion(model, stage, body_of == b)
+         if (motion == 0) cycle
+         if (any(touched .and. body_of == b)) then
+            on_contact = on_contact//'; contact alone holds '//described(model, body_of == b)
+         else if (free == '') then
+            free = described(model, body_of == b)//' against '//trim(MOTIONS(motion))//'; add a &fix of '// &
+                   trim(REMEDIES(motion))//' on a group of it, or a contact.'
+         end if
+      end do
+      do i = 1, size(model%plates)
+         associate (plate => model%plates(i))
+            if (plate%group > 0) cycle
+            fixed = is_fixed(model, stage, AT_U_Z, plate%node)
+            if (plate%turns .or. .not. fixed) on_contact = on_contact//'; contact alone holds the plate '''// &
+                                                           trim(plate%name)//''''
+            if (free /= '') cycle
+            if (plate%turns .and. .not. holds_along_r(model, stage, i)) then
+               free = 'the plate '''//trim(plate%name)//''' against moving along r (x): no &contact of it that '// &
+                      'acts has friction; give one friction, or a &fix of u_r with the plate as its group.'
+            else if (.not. (touched(plate%node) .or. fixed)) then
+               free = 'the plate '''//trim(plate%name)//''': no &contact of it acts; add one, or a &fix of u_z '// &
+                      'with the plate as its group.'
+            end if
+         end associate
+      end do
+   end subroutine look_for_bodies
 
    !> Whether a &fix or the friction of a contact may hold a plate in its plane along r.
    pure logical function holds_along_r(model, stage, plate) result(holds)
@@ -86,41 +96,6 @@ contains
          end associate
       end do
    end function holds_along_r
-
-   !> Notes for every stage which bodies contacts alone hold in it.
-   subroutine note_bodies_on_contact(model)
-      type(model_t), intent(inout) :: model
-      integer :: s
-
-      allocate (model%on_contact(size(model%stages)))
-      do s = 1, size(model%stages)
-         model%on_contact(s)%words = bodies_on_contact(model, model%stages(s))
-      end do
-   end subroutine note_bodies_on_contact
-
-   !> Bodies that contacts alone hold in a stage, as the end of a sentence; empty if there are none.
-   function bodies_on_contact(model, stage) result(text)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      character(:), allocatable :: text
-      integer :: body_of(size(model%domain%mesh%x, 2)), b, i
-      logical :: touched(size(model%domain%mesh%x, 2))
-
-      text = ''
-      if (has_inertia(stage%kind)) return
-      body_of = bodies_of(model)
-      touched = in_contact(model, stage)
-      do b = 1, size(body_of)
-         if (body_of(b) /= b .or. .not. any(touched .and. body_of == b)) cycle
-         if (free_motion(model, stage, body_of == b) == 0) cycle
-         text = text//'; contact alone holds '//described(model, body_of == b)
-      end do
-      do i = 1, size(model%plates)
-         if (model%plates(i)%group > 0 .or. (is_fixed(model, stage, AT_U_Z, model%plates(i)%node) .and. .not. &
-                                             model%plates(i)%turns)) cycle
-         text = text//'; contact alone holds the plate '''//trim(model%plates(i)%name)//''''
-      end do
-   end function bodies_on_contact
 
    !> For every node the first node of its body, 0 for nodes without an element. (nodes)
    function bodies_of(model) result(body)

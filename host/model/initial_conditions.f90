@@ -6,7 +6,7 @@ module initial_conditions
    use kinds, only: wp
    use model_types, only: model_t, gravity_at, initial_t
    use given_pressures, only: pressures_at_start, water, suction
-   use porous_domain, only: state_t, new_state_of, pressures_at, COUPLED, DRY, is_present
+   use porous_domain, only: model_state_t, new_state_of, pressures_at, COUPLED, DRY, is_present
    use material_point, only: material_t, range_t
    use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
@@ -34,7 +34,7 @@ contains
    !> EXIT_MATERIAL.
    subroutine initial_state(model, state, fault, tension)
       type(model_t), intent(in) :: model
-      type(state_t), intent(out) :: state
+      type(model_state_t), intent(out) :: state
       type(fault_t), intent(inout) :: fault
       type(tension_t), intent(out), optional :: tension
       type(ground_t) :: ground

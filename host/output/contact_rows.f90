@@ -7,7 +7,7 @@ module contact_rows
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result
    use contact_types, only: contact_status_t, CONTACT_OK
    use model_types, only: model_t, plate_t
-   use porous_domain, only: state_t
+   use porous_domain, only: model_state_t
    use surface_forces, only: surface_forces_t
    use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
@@ -44,7 +44,7 @@ contains
       type(model_t), intent(in) :: model
       class(surface_forces_t), allocatable, intent(in) :: contacts
       real(wp), intent(in) :: dt, work   !< [s], [kJ]
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), allocatable :: row(:)
       integer :: i
 
@@ -91,7 +91,7 @@ contains
    subroutine contact_nodes(model, contacts, state, table)
       type(model_t), intent(in) :: model
       class(surface_forces_t), intent(in) :: contacts
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), allocatable, intent(out) :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
 
       allocate (table(8, 0))
@@ -103,7 +103,7 @@ contains
 
    subroutine list_nodes(interfaces, state, table)
       type(contact_interface_t), intent(in) :: interfaces(:)
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), allocatable, intent(inout) :: table(:, :)
       type(contact_workspace_t) :: work
       type(contact_result_t) :: found

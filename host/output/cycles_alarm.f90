@@ -35,7 +35,8 @@ contains
       class(archive_t), intent(inout) :: archive
 
       call archive%enter('cycles')
-      call archive%exchange_allocatable('farthest', self%farthest, '1', 'factors that histories came to since they turned')
+      call archive%exchange_allocatable('farthest', self%farthest, '1', &
+                                        'factors that histories came to since they turned')
       call archive%exchange_allocatable('sense', self%sense, '1', 'ways that they go')
       call archive%exchange_allocatable('turns', self%turns, '1', 'turns so far')
       call archive%leave('cycles')

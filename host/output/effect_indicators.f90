@@ -6,7 +6,7 @@ module effect_indicators
    use energy_ledger, only: kinetic_energy
    use model_types, only: model_t
    use unknown_fields, only: AT_P_W
-   use porous_domain, only: state_t, is_present
+   use porous_domain, only: model_state_t, is_present
    use generalised_alpha, only: has_rates, has_inertia
    use texts, only: whole
    implicit none (type, external)
@@ -33,7 +33,7 @@ contains
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage           !< Number of the present one.
       real(wp), intent(in) :: dt, mass(:)    !< [s]; (unknowns) of bodies [Mg].
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp) :: values(4 + size(model%domain%regions)), least
       integer :: e, at
 

@@ -10,7 +10,7 @@ module energy_ledger
    use linear_forces, only: work_of_linear_forces
    use degrees_of_freedom, only: dofs_t
    use porous_balance, only: DEVIATOR
-   use porous_domain, only: domain_t, region_t, state_t, strain_of, mixture_density, pressures_at, is_present, &
+   use porous_domain, only: domain_t, region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
                             gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
@@ -61,8 +61,8 @@ contains
       real(wp), intent(in) :: reaction(:)        !< Residual with every row kept. (unknowns) [kN, m3/s]
       real(wp), intent(in) :: contact_force(:)   !< Mean forces of the contacts over the step, if there are any [kN].
                                                  !< (unknowns) or (0).
-      type(state_t), intent(in) :: old
-      type(state_t), intent(inout) :: new        !< The flows out are set.
+      type(model_state_t), intent(in) :: old
+      type(model_state_t), intent(inout) :: new        !< The flows out are set.
       !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
       real(wp), allocatable, intent(inout) :: damping_stress(:, :)
       type(ledger_t), intent(inout) :: ledger
@@ -115,7 +115,7 @@ contains
    subroutine follow_damping(domain, scheme, old, new, damping_stress)
       type(domain_t), intent(in) :: domain
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp), intent(inout) :: damping_stress(:, :)
       integer :: e, p
 
@@ -157,7 +157,7 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
       real(wp), intent(in) :: contact_force(:)
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp), intent(in) :: change(:, :)
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: load, touch
@@ -213,7 +213,7 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t) :: work
@@ -229,7 +229,7 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
@@ -276,7 +276,7 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       type(ledger_t), intent(inout) :: ledger
       type(relative_t) :: rel
       real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity
@@ -309,7 +309,7 @@ contains
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: mass(:)   !< (unknowns) Of bodies [Mg].
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp) :: nodal(DISPLACEMENTS, 6), v(DISPLACEMENTS), n
       integer :: e, g, p, i
 

@@ -6,7 +6,7 @@ module field_files
    use archive, only: archive_t
    use kinds, only: wp
    use model_types, only: model_t
-   use porous_domain, only: domain_t, state_t
+   use porous_domain, only: domain_t, model_state_t
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
@@ -179,7 +179,7 @@ contains
    subroutine write_frame(folder, domain, state, times, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), allocatable, intent(inout) :: times(:)   !< Times of the fields so far, this one added [s].
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
@@ -243,7 +243,7 @@ contains
    !> Whether the scene has the field.
    pure logical function has(domain, state, i)
       type(domain_t), intent(in) :: domain
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       integer, intent(in) :: i
 
       select case (i)
@@ -276,7 +276,7 @@ contains
    !> the ends: docs/theory/host.md section 3.1.
    pure subroutine all_pressures(domain, state, x)
       type(domain_t), intent(in) :: domain
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), intent(out) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
       integer :: e, i
 
@@ -294,7 +294,7 @@ contains
    !> Means over the elements, in the order of the list.
    pure subroutine means(domain, state, cells)
       type(domain_t), intent(in) :: domain
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), intent(out) :: cells(:, :)
       real(wp) :: weight(domain%rule), s(4), p
       integer :: e, first, last, i
@@ -316,7 +316,7 @@ contains
    subroutine write_xdmf(folder, domain, state, times, fault)
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), intent(in) :: times(:)   !< [s]
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: LF = new_line('a')

@@ -9,7 +9,7 @@ module localisation
    use faults, only: fault_t
    use kinds, only: wp, PI
    use model_types, only: model_t
-   use porous_domain, only: domain_t, state_t, is_present, strain_of
+   use porous_domain, only: domain_t, model_state_t, is_present, strain_of
    use run_observer, only: observer_t, accepted_step_t
    use run_state, only: run_t
    use texts, only: short, whole
@@ -111,7 +111,7 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
       type(slopes_t), intent(in) :: slopes
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp), intent(out) :: work(:)   !< [kJ]
       logical, intent(out) :: lost(:)
       real(wp) :: du(DISPLACEMENTS, 6), strain(4), stress(4)

@@ -10,7 +10,7 @@ module output_tables
    use kinds, only: wp
    use model_types, only: model_t, point_t
    use named_points, only: unknowns_at, motion_at
-   use porous_domain, only: domain_t, state_t
+   use porous_domain, only: domain_t, model_state_t
    use reaction_rows, only: reaction_columns, reaction_row
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
@@ -155,7 +155,7 @@ contains
    subroutine write_history(table, model, state, fault)
       type(csv_t), intent(inout) :: table
       type(model_t), intent(in) :: model
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       integer :: i
 
@@ -210,7 +210,7 @@ contains
       character(*), intent(in) :: folder
       type(domain_t), intent(in) :: domain
       character(*), intent(in) :: stage   !< Name of the stage.
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS, size(state%x, 2))
       type(csv_t) :: table
@@ -267,7 +267,7 @@ contains
       type(model_t), intent(in) :: model
       class(surface_forces_t), allocatable, intent(in) :: contacts
       character(*), intent(in) :: stage   !< Name of the stage.
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: values(:, :)
       type(csv_t) :: table

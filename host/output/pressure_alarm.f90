@@ -10,7 +10,7 @@ module pressure_alarm
    use material_point, only: lost_pressure, PRESSURE_LOST
    use faults, only: fault_t
    use model_types, only: model_t
-   use porous_domain, only: state_t, is_present, COUPLED
+   use porous_domain, only: model_state_t, is_present, COUPLED
    use run_observer, only: observer_t, accepted_step_t
    use run_state, only: run_t
    use texts, only: short
@@ -60,7 +60,7 @@ contains
    subroutine warn_of_oscillation(model, stage, state, lines, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       type(lines_t), intent(inout) :: lines   !< Lines of the mesh; found when they are asked for first.
       logical, intent(inout) :: told
       real(wp) :: share
@@ -91,7 +91,7 @@ contains
    !> Warns of a material that has lost its mean effective stress. docs/theory/memory-rules.md section 2.2.
    subroutine warn_lost_pressure(model, state, told)
       type(model_t), intent(in) :: model
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       logical, intent(inout) :: told
       integer :: e, g, p
 
@@ -136,7 +136,7 @@ contains
    subroutine warn_of_dry_ground(model, stage, state, told)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       logical, intent(inout) :: told
       integer :: node
 

@@ -10,7 +10,7 @@ module water_balance
    use generalised_alpha, only: scheme_t
    use kinds, only: wp
    use model_types, only: model_t
-   use porous_domain, only: domain_t, state_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
+   use porous_domain, only: domain_t, model_state_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use prescribed_values, only: constraint_t
    use run_observer, only: observer_t, accepted_step_t
    use run_state, only: run_t
@@ -107,7 +107,7 @@ contains
    pure subroutine book_storage(domain, e, old, new, water)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       type(water_t), intent(inout) :: water
       real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), p(2), parts(3), n, s
       integer :: g, at
@@ -141,7 +141,7 @@ contains
       !> (unknowns) Residual with the constrained rows kept, of the sum of both fluids where air is an unknown and of
       !> water where its pressure is prescribed [m3/s].
       real(wp), intent(in) :: reaction(:)
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       type(water_t), intent(inout) :: water
       real(wp) :: inflow, outflow, mean(OUTFLOWS)
       integer :: node, w, c

@@ -23,14 +23,21 @@ module step_size
    !> a**(3/2), if the change as a whole is as smooth as a step.
    real(wp), parameter :: LOCAL = 1.5_wp
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until three rates tell of the error.
-   real(wp), parameter :: START_UP_STEPS = 10.0_wp !< First steps, in which a change grows with the square of time yet.
+   real(wp), parameter :: START_UP_STEPS = 10.0_wp !< A change that grows with the square of time is in the first of
+                                                  !< so many steps a hundredth of what it is in the last.
    real(wp), parameter :: FIRST_SHARE = 0.04_wp   !< A pulse over the span has a quarter of its period in 1/25 of it.
-   real(wp), parameter :: FIRST_STATIC = 0.05_wp  !< Largest share of the span that a first static step takes.
+   real(wp), parameter :: FIRST_FLOW = 0.01_wp    !< Largest first step of a flow, a share of the span: with the root of
+                                                  !< time a tenth of all flows off in it.
+   real(wp), parameter :: FIRST_STATIC = 0.05_wp  !< Largest first step of a static stage, likewise: a footing on sand
+                                                  !< is 0.04 % off by it, and 1.6 % by a single step.
    real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
                                                   !< is in error, since flow begins with the root of time.
-   real(wp), parameter :: PLATE_SHARE = 0.01_wp   !< Share of the way of a plate that moves the ground at least.
-   real(wp), parameter :: NEWTON_SHARE = 0.1_wp   !< Share of the error of a step that is left to Newton's method.
-   real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it.
+   real(wp), parameter :: PLATE_SHARE = 0.01_wp   !< A plate moves the ground by a hundredth of its way at least: until
+                                                  !< they meet there is no other change to compare an error with.
+   real(wp), parameter :: NEWTON_SHARE = 0.1_wp   !< Share of the error of a step that is left to Newton's method: in a
+                                                  !< sum of squares a hundredth.
+   real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it: less
+                                                  !< than its rounding times the condition of a matrix, 1e-16 times 1e7.
 contains
    !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
    subroutine begin_control(model, stage, run)
@@ -76,8 +83,8 @@ contains
       else if (is_flow(stage%kind)) then
          ! What a load leaves at once flows off with the root of time. Where nothing is sudden a step that short would
          ! drown what it changes in rounding.
-         dt = span*min(0.01_wp, max(merge(stage%step_tolerance**2, stage%step_tolerance, begins_suddenly(model, run)), &
-                                    SHORTEST))
+         dt = span*min(FIRST_FLOW, max(merge(stage%step_tolerance**2, stage%step_tolerance, &
+                                             begins_suddenly(model, run)), SHORTEST))
       else
          ! Nothing is there yet to compare its error with; what begins from rest grows with the square of time.
          dt = span*FIRST_SHARE*sqrt(stage%step_tolerance)

@@ -7,7 +7,7 @@ module model_builder
    use faults, only: fault_t, raise, EXIT_INPUT
    use boundary_builder, only: build_plates, build_boundaries
    use degrees_of_freedom, only: number_unknowns
-   use free_bodies, only: check_bodies, note_bodies_on_contact
+   use free_bodies, only: check_bodies
    use given_pressures, only: add_centers, check_places
    use load_shapes, only: shape_loads, ties_of
    use mesh_builder, only: build_mesh
@@ -59,7 +59,6 @@ contains
          end do
       end associate
       if (fault%code /= 0) return
-      call note_bodies_on_contact(model)
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call shape_loads(model, model%dofs)

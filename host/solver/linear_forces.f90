@@ -7,7 +7,7 @@ module linear_forces
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use generalised_alpha, only: scheme_t
-   use porous_domain, only: state_t
+   use porous_domain, only: model_state_t
    use sparsity_pattern, only: pattern_t, place_of
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -30,7 +30,7 @@ contains
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
       type(assembly_t), intent(inout) :: assembly
       real(wp) :: force, level, slope
@@ -66,7 +66,7 @@ contains
       type(linear_forces_t), intent(in) :: list(:)
       logical, intent(in) :: by_rates   !< Dashpots, else springs.
       type(dofs_t), intent(in) :: dofs
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp), intent(in) :: change(:, :)   !< (2, nodes) [m]
       real(wp) :: mean
       integer :: i, k

@@ -17,7 +17,7 @@ module newton_step
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
-   use porous_domain, only: domain_t, state_t
+   use porous_domain, only: domain_t, model_state_t
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use stress_tolerance, only: follow_newton, is_tight
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
@@ -338,7 +338,7 @@ contains
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       type(scheme_t), intent(in) :: scheme
       real(wp) :: pores(dofs%n)
       integer :: e, g, i, p, at, n_p
@@ -396,7 +396,7 @@ contains
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
       real(wp), allocatable, intent(in) :: touched(:)   !< Forces of contacts before the step, if they are asked for.
       type(assembly_t), intent(inout) :: assembly
@@ -538,7 +538,7 @@ contains
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
       type(constraint_t), intent(in) :: constraint
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
       type(assembly_t), intent(inout) :: assembly
       integer :: i, f, k, place

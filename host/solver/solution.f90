@@ -5,7 +5,7 @@ module solution
    use kinds, only: wp
    use equation_assembly, only: assembly_t
    use linear_system, only: system_t
-   use porous_domain, only: state_t
+   use porous_domain, only: model_state_t
    use prescribed_values, only: constraint_t
    use sparsity_pattern, only: pattern_t
    implicit none (type, external)
@@ -32,7 +32,7 @@ module solution
       type(assembly_t) :: assembly
       type(system_t) :: system
       type(constraint_t) :: constraint
-      type(state_t) :: state, next             !< Before and after the step under way.
+      type(model_state_t) :: state, next             !< Before and after the step under way.
       type(stage_state_t) :: at
    end type solution_t
 contains

@@ -6,7 +6,7 @@ module springs
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use generalised_alpha, only: scheme_t
-   use porous_domain, only: state_t
+   use porous_domain, only: model_state_t
    use sparsity_pattern, only: pattern_t, place_of
    implicit none (type, external)
    private
@@ -28,7 +28,7 @@ contains
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
       type(assembly_t), intent(inout) :: assembly
       real(wp) :: u0, u1, v0, v1, force, before, slope
@@ -68,7 +68,7 @@ contains
       type(spring_t), intent(in) :: list(:)   !< (springs)
       type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
-      type(state_t), intent(in) :: old, new
+      type(model_state_t), intent(in) :: old, new
       real(wp), allocatable, intent(inout) :: force(:)   !< (unknowns) or (0) before.
       real(wp) :: u, v, mean
       integer :: i
@@ -91,7 +91,7 @@ contains
    pure subroutine shortening(one, dofs, state, u, v)
       type(spring_t), intent(in) :: one
       type(dofs_t), intent(in) :: dofs
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), intent(out) :: u, v
 
       associate (f => dofs%field(one%upper), g => dofs%field(one%lower), a => dofs%node(one%upper), &

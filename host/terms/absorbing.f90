@@ -16,12 +16,12 @@ module absorbing
    use key_table, only: key_table_t
    use kinds, only: wp
    use linear_forces, only: linear_forces_t
-   use material_point, only: response_t, report_t
+   use material_point, only: response_t, batch_report_t
    use model_types, only: model_t, action_t, factor_at
    use name_search, only: mesh_group, defined_name, check_stages
    use namelists, only: group_t
    use permeability_laws, only: relative_t, relative_permeability
-   use porous_domain, only: state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
+   use porous_domain, only: model_state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t, item_of, groups_named
@@ -151,7 +151,7 @@ contains
    subroutine prepare_side(model, side, state, one, fault)
       type(model_t), intent(in) :: model
       type(side_t), intent(inout) :: side
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       type(linear_forces_t), intent(out) :: one
       type(fault_t), intent(inout) :: fault
       type(behind_t) :: ground
@@ -181,7 +181,7 @@ contains
       type(model_t), intent(in) :: model
       type(side_t), intent(in) :: side
       integer, intent(in) :: edge(3)
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       type(behind_t), intent(out) :: ground
       type(fault_t), intent(inout) :: fault
       real(wp) :: rho, c_p, c_s, modulus, shear, s, slope
@@ -225,11 +225,11 @@ contains
    subroutine look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
       type(model_t), intent(in) :: model
       integer, intent(in) :: e
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), intent(out) :: modulus, shear, s, slope, rho
       type(fault_t), intent(inout) :: fault
       type(response_t) :: response
-      type(report_t) :: report
+      type(batch_report_t) :: report
       real(wp) :: strain(6, model%domain%rule), suction(model%domain%rule), pressures(2), n
       real(wp), allocatable :: before(:, :), after(:, :)
       integer :: g, p, first, last
@@ -273,7 +273,7 @@ contains
    real(wp) function pore_stiffness(model, e, state, s, slope) result(stiffness)
       type(model_t), intent(in) :: model
       integer, intent(in) :: e
-      type(state_t), intent(in) :: state
+      type(model_state_t), intent(in) :: state
       real(wp), intent(in) :: s, slope   !< Saturation, its change with suction [1/kPa].
       real(wp) :: n, c(2, 2), room, det
 

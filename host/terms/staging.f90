@@ -14,7 +14,7 @@ module staging
    use model_types, only: model_t, gravity_at
    use name_search, only: check_stages
    use namelists, only: group_t
-   use porous_domain, only: state_t, copy_state
+   use porous_domain, only: model_state_t, copy_state
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t, groups_named, item_of
@@ -145,7 +145,7 @@ contains
       logical, intent(in) :: stays(:)      !< (elements) Or has not been there.
       type(solution_t), intent(in) :: solution
       type(fault_t), intent(inout) :: fault
-      type(state_t) :: at_start, same
+      type(model_state_t) :: at_start, same
       type(slopes_t) :: slopes
       type(element_t) :: out
       integer :: e, i, at

@@ -9,7 +9,7 @@ module strength
    use model_types, only: model_t, factor_at
    use name_search, only: defined_name
    use namelists, only: group_t
-   use porous_domain, only: state_t
+   use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t, item_of, groups_named
@@ -192,7 +192,7 @@ contains
       type(change_t), intent(in) :: list(:)
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: from, until     !< Start and end of the step [s].
-      type(state_t), intent(inout) :: next
+      type(model_state_t), intent(inout) :: next
       logical, intent(out) :: changes         !< Whether a factor differs at its end.
       real(wp), dimension(size(list)) :: before, after
       logical :: own(size(list))

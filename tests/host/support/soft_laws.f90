@@ -4,7 +4,7 @@
 module soft_laws
    use kinds, only: wp
    use material_elastic, only: elastic_t, isotropic
-   use material_point, only: response_t, report_t
+   use material_point, only: response_t, batch_report_t
    use model_types, only: model_t
    implicit none (type, external)
    private
@@ -50,7 +50,7 @@ contains
       logical, intent(in) :: with_tangent
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
-      type(report_t), intent(out) :: report
+      type(batch_report_t), intent(out) :: report
       integer :: g
 
       call self%elastic_t%update(n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &

@@ -5,7 +5,7 @@ module material_hypoelastic
    use faults, only: fault_t
    use key_schema, only: key_t, number_of, REQUIRED, UNBOUNDED
    use kinds, only: wp
-   use material_point, only: material_t, response_t, report_t, swollen, NAME_LENGTH
+   use material_point, only: material_t, response_t, batch_report_t, swollen, NAME_LENGTH
    use retention_curves, only: saturation_t
    use namelists, only: group_t
    implicit none (type, external)
@@ -71,7 +71,7 @@ contains
       logical, intent(in) :: with_tangent
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
-      type(report_t), intent(out) :: report
+      type(batch_report_t), intent(out) :: report
       type(saturation_t) :: sat
       real(wp) :: bulk, shear, slope(6, 6), e
       integer :: i, g
@@ -110,7 +110,7 @@ contains
 
    subroutine message(self, report, text)
       class(hypoelastic_t), intent(in) :: self
-      type(report_t), intent(in) :: report
+      type(batch_report_t), intent(in) :: report
       character(*), intent(out) :: text
 
       associate (unused => self)
