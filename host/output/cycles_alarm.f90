@@ -16,7 +16,7 @@ module cycles_alarm
    private
    public :: cycles_alarm_t
 
-   real(wp), parameter :: LEAST_SWING = 0.1_wp   !< Of a history that counts, share of its range [-].
+   real(wp), parameter :: LEAST_SWING = 0.1_wp   !< A history turns where it comes back by this share of its range [-].
 
    type, extends(observer_t) :: cycles_alarm_t
       real(wp), allocatable :: farthest(:)   !< (histories) Factor that each came to since it turned last [-].
@@ -35,8 +35,7 @@ contains
       class(archive_t), intent(inout) :: archive
 
       call archive%enter('cycles')
-      call archive%exchange_allocatable('farthest', self%farthest, '1', &
-                                        'factors that histories came to since they turned')
+      call archive%exchange_allocatable('farthest', self%farthest, '1', 'factors that histories came to')
       call archive%exchange_allocatable('sense', self%sense, '1', 'ways that they go')
       call archive%exchange_allocatable('turns', self%turns, '1', 'turns so far')
       call archive%leave('cycles')

@@ -197,6 +197,14 @@ def test_a_reversal_belongs_to_the_cycle_that_it_ends():
           and told[0].endswith("reached in cycle 3"), (rows[-1], told))
 
 
+def test_cycles_beyond_the_tenth_are_told_not_to_be_trusted():
+    # Eleven cycles turn twenty-two times. At constant volume nothing settles.
+    for control, cycles, told in (("drained", 11, 1), ("drained", 10, 0), ("undrained", 11, 0)):
+        stage = f"control = '{control}', cycle_by = 'eps_a', amplitude = 1e-5, cycles = {cycles}, increment = 1e-5"
+        warned = call(stage, initial="p_eff = 100, void_ratio = 0.8").stderr
+        check(f"{cycles} {control} cycles", warned.count("settlement that cycles accumulate") == told, warned)
+
+
 def test_a_way_of_no_length_is_passed_over():
     # The first turn is where the sample stands: the cycles begin with the way to the other turn.
     rows, _ = run("control = 'drained', cycle_by = 'eps_a', amplitude = 4e-4, centre = -4e-4, cycles = 2, "

@@ -35,7 +35,7 @@ NUMBER = Tolerance("the prototype at tolerance 1e-5, other increments around the
 TURNING = Tolerance("the requirement on turning paths: 1e-3 of the stress, a hundred tolerances", absolute=0.1)
 QUICK_TURNS = ("circle 2e-4, 80 sides", "circle 2e-4, 332 sides", "square 2e-4", "eight 1e-4, 80 sides")
 
-# What the prototype of the default rule gave.
+# What the prototype of the default rule gave; it had no isotropic memory.
 SYMMETRIC = {"1 low": -3.07, "1 high": 3.10, "300 low": -3.09, "300 high": 3.10}
 BIASED = {"100": 0.009, "1000": 0.068}
 LOOPS = {(0.735, 0.01): (0.00, -0.02, -0.43, -4.4), (0.735, 0.10): (0.00, -0.29, -1.9, -3.2),
@@ -50,7 +50,8 @@ def criteria(walker, soil):
     symmetry = memory_long.long_symmetric(walker, soil)
     found += [(f"1000 cycles of gamma {size}: asymmetry of tau in the last one over the range", value, 0.0, SYMMETRY, "%")
               for size, value in symmetry.items() if size != "cuts"]
-    found += [(f"biased cycles: axial strain after {n}", value, BIASED[n], STRAIN, "%") for n, value in published.biased(walker, soil).items()]
+    found += [(f"biased cycles without isotropic memory: axial strain after {n}", value, BIASED[n], STRAIN, "%")
+              for n, value in published.biased(walker, soil.having(isotropic=1)).items()]
     found += [(f"300 cycles of gamma 1e-4: tau, {key}", value, SYMMETRIC[key], RANGE, "kPa")
               for key, value in published.symmetric(walker, soil).items() if key in SYMMETRIC]
     deviations = published.loops(walker, soil)
