@@ -97,7 +97,8 @@ def write_chart(places: list[Place], folder: pathlib.Path, material: str) -> Non
         if rows:
             x, y, error = zip(*rows)
             ax.errorbar(x, y, error, color=COLOURS[i % 6], ls=LINES[i % 6], marker="os^Dv*"[i % 6], mfc="w", capsize=3)
-            ax.annotate(f" {label}", (x[-1], y[-1]), fontsize=8, color=COLOURS[i % 6], va="center")
+            beside = {"xytext": (8, 0), "textcoords": "offset points", "va": "center"}
+            ax.annotate(label, (x[-1], y[-1]), fontsize=8, color=COLOURS[i % 6], **beside)
 
     for i, ratio in enumerate(ratios):
         kept = [p for p in places if p.void_ratio == ratio]
