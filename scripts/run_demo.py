@@ -42,7 +42,7 @@ def indentation(host, folder):
 
 def deflectometer(build, host, folder):
     """A seating and a measured drop on Toyoura sand at a suction of 30 kPa, with their errors."""
-    print("\nA light falling weight deflectometer on unsaturated sand (about 20 seconds)", flush=True)
+    print("\nA light falling weight deflectometer on unsaturated sand (about half a minute)", flush=True)
     environment = {**os.environ, "MUD_LIBRARY_DIR": str(build), "PYTHONPATH": str(ROOT / "python")}
     test = ["test", "--material", "toyoura", "--void-ratio", "0.8", "--suction", "30", "--drops", "1", "1"]
     if subprocess.run([sys.executable, "-m", "mud.lwd", *test, "--host", host, "--output", folder / "lwd"],

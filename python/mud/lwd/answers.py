@@ -177,7 +177,7 @@ def _peak(time, moved):
 def _depth_of(depths, shares, base):
     """Depth at which a share that falls with depth is INFLUENCE [m].
 
-    Between points its logarithm is straight, and below the last one it is itself, down to the base, which does not move.
+    Between points its logarithm is straight, below the last one the share itself, down to a base that does not move.
     """
     for (d0, s0), (d1, s1) in zip(zip(depths, shares), zip(depths[1:], shares[1:])):
         if s1 <= INFLUENCE < s0:

@@ -31,7 +31,7 @@ class Place:
 def run_grid(places: list[Place], words: list[str], processes: int, say) -> None:
     """Runs what has no result: `words` are the options that all tests share. Interrupted, it ends its tests."""
     waiting, running = list(places), []
-    began, seconds = time.monotonic(), []
+    began = time.monotonic()
     try:
         while waiting or running:
             while waiting and len(running) < processes:
@@ -41,20 +41,20 @@ def run_grid(places: list[Place], words: list[str], processes: int, say) -> None
                 command += ["--void-ratio", f"{place.void_ratio:g}", "--suction", f"{place.suction:g}"]
                 command += ["--output", str(place.folder)]
                 log = open(place.folder / "said.txt", "w", encoding="utf-8")  # noqa: SIM115 (closed where it ends)
-                running.append((place, time.monotonic(), subprocess.Popen(command, stdout=log, stderr=log), log))
+                running.append((place, subprocess.Popen(command, stdout=log, stderr=log), log))
             time.sleep(0.2)
-            for one in [x for x in running if x[2].poll() is not None]:
-                place, start, process, log = one
+            for one in [x for x in running if x[1].poll() is not None]:
+                place, process, log = one
                 running.remove(one)
                 log.close()
-                seconds.append(time.monotonic() - start)
                 _take(place, process.returncode)
                 done = len(places) - len(waiting) - len(running)
-                left = (time.monotonic() - began) / done * (len(places) - done)
+                through = done + len(running) / 2  # those that run are halfway, on the average
+                left = (time.monotonic() - began) / through * (len(places) - through)
                 end = f"{place.told['modulus'] / 1e3:.3g} MN/m2" if place.told else place.said
                 say(f"   {done} of {len(places)}: {place.folder.name}: {end}; {left:.0f} s left")
     finally:
-        for _, _, process, log in running:
+        for _, process, log in running:
             process.terminate()
             process.wait()
             log.close()
@@ -97,7 +97,8 @@ def write_chart(places: list[Place], folder: pathlib.Path, material: str) -> Non
         if rows:
             x, y, error = zip(*rows)
             ax.errorbar(x, y, error, color=COLOURS[i % 6], ls=LINES[i % 6], marker="os^Dv*"[i % 6], mfc="w", capsize=3)
-            ax.annotate(f" {label}", (x[-1], y[-1]), fontsize=8, color=COLOURS[i % 6], va="center")
+            beside = {"xytext": (8, 0), "textcoords": "offset points", "va": "center"}
+            ax.annotate(label, (x[-1], y[-1]), fontsize=8, color=COLOURS[i % 6], **beside)
 
     for i, ratio in enumerate(ratios):
         kept = [p for p in places if p.void_ratio == ratio]

@@ -163,12 +163,24 @@ def study(bench):
     return {name: [r for r in rows if r["ground"] == name] for name in dict.fromkeys(r["ground"] for r in rows)}
 
 
+def stiffness(row):
+    """Shear modulus by eq. (3) at rest, a radius below the surface, over G_0 p_atm [-].
+
+    Its mean effective stress is that of suction and of the weight with K_0 = 0.5.
+    """
+    e, s_w, suction = (float(row[key]) for key in ("void_ratio", "S_w", "suction_kPa"))
+    weight = 9.81 * RADIUS * (2.65 + s_w * e) / (1 + e)
+    return (2.97 - e)**2 / (1 + e) * math.sqrt((s_w * suction + 2 / 3 * weight) / 101.325)
+
+
 def texts(bench):
     """The committed tables, and how the modulus grows with suction."""
     rows, drops = (tables.rows(bench.here / f"{name}.csv") for name in ("chart", "drops"))
     chart = tables.markdown(
-        ("void ratio", "suction [kPa]", "S_w", "modulus [MN/m2]", "error", "deflection [mm]"),
-        [(r["void_ratio"], r["suction_kPa"], r["S_w"], r["modulus_MPa"], r["error_MPa"], r["deflection_mm"])
+        ("void ratio", "suction [kPa]", "S_w", "modulus [MN/m2]", "error", "deflection [mm]", "modulus over the first",
+         "G of eq. (3) over the first"),
+        [(r["void_ratio"], r["suction_kPa"], r["S_w"], r["modulus_MPa"], r["error_MPa"], r["deflection_mm"],
+          f"{float(r['modulus_MPa']) / float(rows[0]['modulus_MPa']):.2f}", f"{stiffness(r) / stiffness(rows[0]):.2f}")
          for r in rows])
     for ratio in dict.fromkeys(r["void_ratio"] for r in rows):
         kept = [r for r in rows if r["void_ratio"] == ratio and r["modulus_MPa"]]
