@@ -15,7 +15,7 @@ module step_attempt
    use run_state, only: run_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
-   use scene_parts, only: stage_t
+   use scene_parts, only: acts_in, stage_t
    use solution, only: stage_state_t
    implicit none (type, external)
    private
@@ -123,7 +123,8 @@ contains
          ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing, or a
          ! contact that an iterate has opened.
          lost = log%outcome == BODY_FREE .and. run%assembly%replaced == 0
-         if (lost .and. at%step > 0) lost = model%on_contact(at%stage)%words == ''
+         if (at%step > 0) lost = lost .and. .not. any([(acts_in(model%contacts(i)%stages, stage%name), &
+                                                        i=1, size(model%contacts))])
          share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
          if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
              lost) then
