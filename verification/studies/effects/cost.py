@@ -43,7 +43,8 @@ def footing(cells):
 
 
 SCENES = {"strip, 32 elements": strip(4), "strip, 3200 elements": strip(40), "strip, 24200 elements": strip(110),
-          "footing on sand, 1200 elements": footing(10), "footing on sand, 10800 elements": footing(30)}
+          "footing on sand, 1200 elements": footing(10), "footing on sand, 10800 elements": footing(30),
+          "footing on sand, 23232 elements": footing(44)}
 
 
 def processor():

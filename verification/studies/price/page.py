@@ -39,8 +39,10 @@ def texts(bench):
     for name in study.SCENES:
         cells = []
         for r in (r for r in committed() if r["scene"] == name):
-            how = "" if r["state"] == "met" else "about "
+            how, none = "" if r["state"] == "met" else "about ", "no run is known"
+            if r["state"] == "localised":
+                none = "shear localises"
             cells.append(f"{how}{float(r['seconds']):.2g} s (F {float(r['fineness']):g}, a {float(r['step_tolerance']):.2g}: "
-                         f"{100*float(r['total']):.2g} %)" if r["seconds"] else "no run is known")
+                         f"{100*float(r['total']):.2g} %)" if r["seconds"] else none)
         lines.append((name, *cells))
     return {"README.md": {"price": tables.markdown(("scene", "10 %", "3 %", "1 %"), lines)}}
