@@ -74,9 +74,11 @@ def test_the_formulas_are_those_of_the_standards():
 
 
 def test_warnings_that_differ_by_their_time_are_told_once():
-    from mud.lwd.measure import _folded
+    from mud.study.runs import warnings_of
 
-    told = _folded(["stage drop_1, time 2.01 s: stays at 5.9e-4.", "other", "stage drop_2, time 2.1 s: stays at 1e-3."])
+    said = ("stage drop_1, time 2.01 s: stays at 5.9e-4.", "other", "stage drop_2, time 2.1 s: stays at 1e-3.")
+    (work / "errors.txt").write_text("".join(f"mud_host: warning: {words}\n" for words in said))
+    told = warnings_of(work)
     check("folded", told == ["stage drop_1, time 2.01 s: stays at 5.9e-4. (and 1 more)", "other"], told)
 
 
