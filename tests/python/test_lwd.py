@@ -279,6 +279,9 @@ def test_what_cannot_be_computed_is_refused_in_a_sentence():
     ):
         done = lwd("test", *words, "--output", "refused")
         check(f"{words} is refused", done.returncode == 2 and said in done.stderr, done.stderr)
+    (work / "taken").write_text("a file")
+    done = lwd("test", *ELASTIC, "--output", "taken")
+    check("a folder that is a file", done.returncode == 2 and "mud_lwd: [Errno" in done.stderr, done.stderr)
     # A run that ends on its own: the host's sentence.
     done = lwd("test", *SAND, "--void-ratio", "5", "--suction", "20", "--output", "fails")
     check("a run that fails", done.returncode == 3 and "the run with fineness 0.5" in done.stderr, done.stderr)

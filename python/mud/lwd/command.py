@@ -213,7 +213,7 @@ def main(words: list[str] | None = None) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return {"test": test, "chart": chart}[args.command](args)
-    except InputError as problem:
+    except (InputError, OSError) as problem:  # OSError: a file or folder that cannot be written
         print(f"mud_lwd: {problem}", file=sys.stderr)
         return EXIT_INPUT
     except Failed as problem:
