@@ -54,7 +54,8 @@ contains
       type(increment_t) :: acting
       type(rate_t) :: w
 
-      turns = inc%rests .and. -margin*trial%w(1)%p < sqrt(3.0_wp)*inc%rho*trial%w(1)%k
+      turns = inc%rests
+      if (turns) turns = -margin*trial%w(1)%p < sqrt(3.0_wp)*inc%rho*trial%w(1)%k
       if (.not. turns) return
       acting = inc
       acting%rests = .false.
