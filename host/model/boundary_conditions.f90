@@ -32,7 +32,7 @@ contains
                 constraint%rain_0(dofs%n), constraint%rain_1(dofs%n), constraint%offset(dofs%n), &
                 constraint%mass(dofs%n), source=0.0_wp)
       allocate (constraint%air_target(nodes), source=0.0_wp)
-      allocate (constraint%bodies(3, 0))
+      allocate (constraint%bodies(3, 0), constraint%added(0))
       do i = 1, size(model%plates)
          associate (plate => model%plates(i))
             if (plate%turns) then

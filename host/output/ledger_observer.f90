@@ -11,13 +11,12 @@ module ledger_observer
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
    use faults, only: fault_t, raise
-   use generalised_alpha, only: has_inertia
+   use generalised_alpha, only: scheme_t, has_inertia
    use kinds, only: wp
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
    use run_observer, only: observer_t, accepted_step_t, slot_t
    use run_state, only: run_t
-   use springs, only: mean_forces_of_springs
    use run_tables, only: open_table, exchange_table
    use texts, only: short
    use wall_clock, only: clock, add_elapsed
@@ -110,8 +109,7 @@ contains
             contact_force = mean_contact_forces(run, model%dofs)
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
-         if (allocated(run%constraint%springs)) call mean_forces_of_springs(run%constraint%springs, model%dofs, &
-                                                             done%scheme, run%state, run%next, contact_force)
+         if (size(run%constraint%added) > 0) call add_means(run, model%dofs, done%scheme, contact_force)
          call book_step(model%domain, model%dofs, done%scheme, run%constraint, run%system%reaction, contact_force, &
                         run%state, run%next, self%damping_stress, ledger)
          call book_creation(done%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &
@@ -126,6 +124,23 @@ contains
                     ' %. Its results may be wrong by any factor: '//REMEDY//'; created_energy of &stage allows more.')
       end associate
    end subroutine step
+
+   !> Adds the means of forces of terms to those of the contacts, which may be none yet [kN].
+   !> docs/theory/host.md section 9.
+   subroutine add_means(run, dofs, scheme, force)
+      type(run_t), intent(in) :: run
+      type(dofs_t), intent(in) :: dofs
+      type(scheme_t), intent(in) :: scheme
+      real(wp), allocatable, intent(inout) :: force(:)   !< (unknowns) or (0) before.
+      integer :: i
+
+      if (size(force) == 0) force = spread(0.0_wp, 1, dofs%n)
+      do i = 1, size(run%constraint%added)
+         associate (one => run%constraint%added(i)%it)
+            if (one%acts) call one%add_means(dofs, scheme, run%state, run%next, force)
+         end associate
+      end do
+   end subroutine add_means
 
    !> Mean of the forces of the contacts at the ends of a step, to be added to the internal ones; zero where the
    !> displacements are refused [kN]. (unknowns)

@@ -8,7 +8,6 @@ module newton_step
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
                           rounding_in, water_of, BY_FORCES, BY_CHANGE
    use linear_forces, only: add_linear_forces
-   use springs, only: add_springs
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t, assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
@@ -405,11 +404,7 @@ contains
       real(wp), intent(inout) :: t0
       real(wp), allocatable :: without(:)   !< The residual without contacts.
 
-      call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-      if (allocated(constraint%springs)) call add_springs(constraint%springs, dofs, pattern, scheme, old, new, slopes, &
-                                                          assembly)
-      if (allocated(constraint%linear)) call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, &
-                                                            slopes, assembly)
+      call add_forces(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
       allocate (without(merge(dofs%n, 0, allocated(touched))))
       if (allocated(touched)) without(:) = assembly%residual
       if (allocated(system%contacts)) then
@@ -473,11 +468,7 @@ contains
             log%outcome = MATERIAL_FAILED
             return
          end if
-         call add_bodies(dofs, pattern, scheme, held, state, work, .true., assembly)
-         if (allocated(held%springs)) call add_springs(held%springs, dofs, pattern, scheme, state, work, .true., &
-                                                       assembly)
-         if (allocated(held%linear)) call add_linear_forces(held%linear, dofs, pattern, scheme, state, work, .true., &
-                                                            assembly)
+         call add_forces(dofs, pattern, scheme, held, state, work, .true., assembly)
          if (allocated(system%contacts)) call system%contacts%add(pattern, 0.0_wp, .false., assembly%residual, &
                                                                   assembly%scale, assembly%values)
          rhs = held%load_0 - held%offset - assembly%residual
@@ -531,6 +522,27 @@ contains
          where (constraint%fixed .or. dofs%field > DISPLACEMENTS) forces = 0.0_wp
       end associate
    end function unbalanced_forces
+
+   !> Inertia of rigid bodies, and the forces of terms.
+   subroutine add_forces(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(scheme_t), intent(in) :: scheme
+      type(constraint_t), intent(in) :: constraint
+      type(model_state_t), intent(in) :: old, new
+      logical, intent(in) :: slopes
+      type(assembly_t), intent(inout) :: assembly
+      integer :: i
+
+      call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+      do i = 1, size(constraint%added)
+         associate (one => constraint%added(i)%it)
+            if (one%acts) call one%add(dofs, pattern, scheme, old, new, slopes, assembly)
+         end associate
+      end do
+      if (allocated(constraint%linear)) call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, &
+                                                               slopes, assembly)
+   end subroutine add_forces
 
    !> Inertia of rigid bodies.
    subroutine add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
