@@ -15,8 +15,8 @@ function(mud_set_warnings target)
             RULE_LAUNCH_COMPILE "sh ${PROJECT_SOURCE_DIR}/cmake/relative_names.sh ${PROJECT_SOURCE_DIR}")
       endif()
    endif()
-   # Without optimisation gfortran 12 takes every allocation on assignment for a use of undefined bounds.
-   if(CMAKE_BUILD_TYPE STREQUAL "Debug")
+   # Without much optimisation gfortran 12 takes allocations for a use of undefined bounds.
+   if(CMAKE_BUILD_TYPE MATCHES "^(Debug|Sanitize)$")
       list(APPEND fortran -Wno-maybe-uninitialized)
    endif()
    if(MUD_WERROR)
