@@ -225,7 +225,7 @@ MUTATIONS = [
     ("a switch of the isotropic mechanism that does not move",
      (EVENT_TABLE, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
     ("noise at what the isotropic mechanism remembers is a reversal",
-     (ISOTROPIC_MEMORY, "turns = inc%rests .and.", "turns = .false. .and.")),
+     (ISOTROPIC_MEMORY, "turns = inc%rests\n", "turns = .false.\n")),
     ("shear that turns just below the isotropic memory is noise",
      (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
     ("the place where a drift ends is not located", (EVENTS, "FEW_STARTS = 1", "FEW_STARTS = 0")),
