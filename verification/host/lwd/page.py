@@ -20,7 +20,7 @@ PAGE = Page(
     reference="pi/2 (1 - nu^2) sigma r/E of a rigid plate, with Kausel's (1974) factor of a layer on a rigid base; one "
               "degree of freedom with the stiffness and the dashpot of Lysmer & Richart (1966)",
     seconds=40, quick=10, pictures=("lwd.png",))
-MAKES = (Script("chart.py", ("chart.csv", "chart.png", "drops.csv", "plates.csv", "study.csv", "test.png"), 1300),)
+MAKES = (Script("chart.py", ("chart.csv", "chart.png", "drops.csv", "plates.csv", "study.csv", "test.png"), 1100),)
 
 YOUNG, POISSON, RADIUS, PEAK = 3e4, 0.3, 0.15, 100 * math.pi * 0.15**2
 SHEAR, DENSITY = YOUNG / (2 * (1 + POISSON)), 2.65 / 1.6

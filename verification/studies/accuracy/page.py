@@ -14,7 +14,7 @@ PAGE = Page(
     reference="a closed form, else a run with two or four times the cells of the final run and less than a third of its step "
               "tolerance and of the other tolerances",
     seconds=20, quick=4)
-MAKES = (Script("study.py", ("results.csv",), 3600),)
+MAKES = (Script("study.py", ("results.csv",), 3600, alone=True),)
 
 WITHIN = Tolerance("between a third and five times the true error: a factor of four either way of 1.3", absolute=4.0)
 QUICK, FULL = ("strip",), ("strip", "mandel", "sudden bar")
