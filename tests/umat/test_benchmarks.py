@@ -57,3 +57,15 @@ def test_work_and_precision_run():
           tight and all(float(row["error"]) < 1e-5 for row in tight), tight)
     done = start(build / "benchmarks/work_precision", "orders")
     check("orders: runs", done.returncode == 0 and len(done.stdout.splitlines()) > 10, done.stderr)
+
+
+def test_the_host_alone_runs_the_column_of_the_other_programs():
+    if preset != "release":
+        return   # a time is what it is for
+    done = start(sys.executable, root / "benchmarks/column.py", "--small", "--rounds", 1, "--results", work)
+    rows = tables.parsed((work / "column.csv").read_text()) if done.returncode == 0 else []
+    check("the column: two rows of the host", [row["program"] for row in rows] == ["mud_host", "mud_host, fresh"],
+          done.stdout + done.stderr)
+    check("the column: the answers are Terzaghi's to 0.2 %", all(
+        abs(float(row[f"{what}_error_percent"])) < 0.2 for row in rows for what in ("settlement", "pressure")), rows)
+    check("the column: a page beside it", "| mud_host |" in (work / "column.md").read_text(), done.stdout)
