@@ -66,6 +66,6 @@ module mud_event_table
       event_t(ORDINARY .or. ELASTIC, RATE_THERE, BEYOND, .false., EXACT, EXACT_TRIALS), & ! and unloads
       event_t(ORDINARY, RATE_THERE, AT, .true., EXACT, EXACT_TRIALS), &             ! reverses
       event_t(ORDINARY, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                ! returns
-      event_t(ORDINARY, RATE_THERE, AT, .true., NEARLY, 4), &                       ! goes forwards
+      event_t(ORDINARY, RATE_THERE, AT, .true., EXACT, 8), &                        ! goes forwards
       event_t(NOBODY, RATE_THERE, AT, .false., NEARLY, FEW_TRIALS)]                 ! ceases to go forwards
 end module mud_event_table

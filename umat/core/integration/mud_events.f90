@@ -14,7 +14,6 @@ module mud_events
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_return_point, only: place_t, projection_on_chord, note_progress, note_farthest
-   use mud_reversal, only: drags_memory
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
    use mud_trial, only: trial_t, take_step
@@ -29,8 +28,6 @@ module mud_events
    !> A margin of the isotropic memory that a substep exceeds by less than this share of the tolerance, or a drive that
    !> leads as far below it, is not looked at [-].
    real(wp), parameter :: SMALL_MARGIN = 0.01_wp
-   !> So many of an increment are located: where rates chatter there would be one after another.
-   integer, parameter :: FEW_STARTS = 1
    !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
    real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
 contains
@@ -108,10 +105,9 @@ contains
          case (EVENT_RETURN)
             possible = trial%watched > 0
          case (EVENT_FORWARDS)
-            possible = drags_memory(par) .and. trial%w(1)%loading .and. .not. trial%advanced
-            if (possible) possible = trial%starts < FEW_STARTS .and. backwards(trial%w(1)) > 0.0_wp .and. &
-                                     (inc%scheme%first_same_as_last .or. &
-                                      backwards(trial%w(inc%scheme%stages)) <= 0.0_wp)
+            possible = trial%drifts
+            if (possible) possible = inc%scheme%first_same_as_last .or. &
+                                     backwards(trial%w(inc%scheme%stages)) <= 0.0_wp
          end select
       end associate
    end subroutine look_ahead
@@ -134,8 +130,8 @@ contains
    !> if it went on at twice the rate with which the substep begins. A parabola that comes back falls a quarter as far.
    !> Where it stays between 0 and -x_rev, as in soil that hardly moves, nothing is looked for. A process that drifts
    !> backwards from its beginning (softening outside the bounding surface) is not looked at: there the floor makes the
-   !> rates independent of the memory, and it is enough to begin anew where a substep begins. Without any
-   !> guard that is so everywhere.
+   !> rates independent of the memory, and it is enough to take the beginning along, or to begin anew where a substep
+   !> begins. Without any guard the latter is so everywhere.
    pure logical function may_reverse(par, inc, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

@@ -3,7 +3,6 @@
 !> elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
 module mud_phases
    use mud_branches, only: course_t, list_kinks, take_branch, turn_around, MAX_KINKS
-   use mud_consistent, only: begin_stretch
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
    use mud_increment, only: increment_t, take_phase, suction_at, end_in_domain, SHORTEST_PHASE
    use mud_integration, only: integration_t
@@ -36,15 +35,11 @@ contains
       integer :: i, n
 
       call list_cuts(par, it%inc, course, cuts, n)
-      it%trial%starts = 0
       from = 0.0_wp
       do i = 1, n
          call take_phase(par, from, cuts(i)%time, it%inc)
          if (par%hysteresis) call take_branch(from, cuts(i)%time, course, it)
-         if (it%consistent) then
-            end_shift = change_of_cut(par, it, cuts(i))
-            call begin_stretch(it%inc, end_shift, it%sens)
-         end if
+         if (it%consistent) end_shift = change_of_cut(par, it, cuts(i))
          call integrate_phase(par, end_shift, it)
          if (it%status%code /= MUD_OK) return
          if (cuts(i)%turns) call turn_around(course, it)
