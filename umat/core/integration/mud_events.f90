@@ -5,7 +5,7 @@ module mud_events
    use mud_error_control, only: changes_root
    use mud_event_functions, only: rate_at_end, place_of, backwards
    use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_PARTS, EVENT_CLOSES, EVENT_MECHANISM, &
-      EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
+      EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate
    use mud_integration, only: integration_t
    use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
@@ -82,6 +82,9 @@ contains
             else
                possible = .false.
             end if
+         case (EVENT_DILATES)
+            possible = trial%w(1)%preloaded .and. error > SHARP_KINK*par%tolerance
+            if (possible) possible = switches(trial%w(1)%d, trial%w(inc%scheme%stages)%d)
          case (EVENT_YIELD)
             possible = inc%rests
             if (possible) possible = margin_after(par, inc, trial, h) > SMALL_MARGIN*par%tolerance
@@ -120,11 +123,16 @@ contains
       type(trial_t), intent(in) :: trial
 
       mechanism_switches = inc%suction%bonds .and. abs(inc%d_pc) > 0.0_wp
-      if (.not. mechanism_switches) return
-      associate (first => trial%w(1)%iso_drive, last => trial%w(inc%scheme%stages)%iso_drive)
-         mechanism_switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)
-      end associate
+      if (mechanism_switches) &
+         mechanism_switches = switches(trial%w(1)%iso_drive, trial%w(inc%scheme%stages)%iso_drive)
    end function mechanism_switches
+
+   !> True where a number changes its sign in a substep that does not begin there.
+   pure logical function switches(first, last)
+      real(wp), intent(in) :: first, last
+
+      switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)
+   end function switches
 
    !> True where a reversal inside the substep is possible: (r - r_in):n is beyond -x_rev at its last stage, or would be
    !> if it went on at twice the rate with which the substep begins. A parabola that comes back falls a quarter as far.
