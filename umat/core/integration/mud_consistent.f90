@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. The jumps of memory, the
 !> share of an increment inside the elastic domain and the times of events (mud_event_time) are differentiated. Sizes
-!> of substeps are frozen, as shares of the rest of their phase, but for those that end at an event: behind it all
-!> substeps begin later by its shift, and shrink with the rest. In the limit of small substeps that is the saltation
-!> term (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
+!> of substeps are frozen but for those that end at an event, for the last, which ends where the increment ends, and for
+!> those that divide the rest: behind an event all substeps begin later by its shift. In the limit of small substeps
+!> that is the saltation term (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
 module mud_consistent
    use mud_kinds, only: wp
    use mud_loading, only: loading_t
@@ -31,7 +31,7 @@ module mud_consistent
    use mud_vector, only: NY, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, propagate, changes_of_contraction, jump_of_memory, &
+   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, changes_of_contraction, jump_of_memory, &
              changes_of_parting, change_with_size, changes_at_memory, changes_along, changes_of_ratio, &
              linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
 
@@ -59,6 +59,7 @@ module mud_consistent
       !> Derivatives of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts.
       real(wp) :: margin(DIRECTIONS)
       real(wp) :: parts(DIRECTIONS)          !< derivatives of the void ratio at which the grains of a held point part
+      real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
       type(driving_t) :: driving
       type(fading_t) :: fading               !< derivatives of what fades of the rates, where that is known
    end type sensitivity_t
@@ -83,6 +84,15 @@ contains
       call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
 
+   !> A phase begins whose end has a pseudo-time that changes by end_shift [-]. Its substeps stretch with it.
+   pure subroutine begin_stretch(inc, end_shift, sens)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: end_shift(DIRECTIONS)
+      type(sensitivity_t), intent(inout) :: sens
+
+      sens%stretch = (end_shift - sens%shift)/(inc%to - inc%from)
+   end subroutine begin_stretch
+
    !> Carries the derivatives through an accepted substep h, the last one of a phase or not. The end of a phase has a
    !> pseudo-time that changes by end_shift. h and end_shift are shares of inc [-]. docs/theory/integration.md section
    !> 5.3.
@@ -97,7 +107,11 @@ contains
 
       sens%log_chi0 = sens%y(:, Y_LOG_CHI)
       sens%y(:, Y_CONTRACTION) = 0.0_wp
-      dh = (h/(inc%to - trial%time))*(end_shift - sens%shift)
+      if (trial%divides .or. last) then
+         dh = (h/(inc%to - trial%time))*(end_shift - sens%shift)
+      else
+         dh = h*sens%stretch
+      end if
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, sens%parts, trial%y0(1:6), trial%time, h, sens%shift, dh, &
                                    sens%driving, sens%y)

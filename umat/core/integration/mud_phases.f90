@@ -2,6 +2,7 @@
 !> An increment as a list of phases. Where suction turns, passes zero or a kink of S_w, and where the strain leaves the
 !> elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
 module mud_phases
+   use mud_consistent, only: begin_stretch
    use mud_branches, only: course_t, list_kinks, take_branch, turn_around, MAX_KINKS
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
    use mud_increment, only: increment_t, take_phase, suction_at, end_in_domain, SHORTEST_PHASE
@@ -35,11 +36,15 @@ contains
       integer :: i, n
 
       call list_cuts(par, it%inc, course, cuts, n)
+      it%trial%divides = .false.
       from = 0.0_wp
       do i = 1, n
          call take_phase(par, from, cuts(i)%time, it%inc)
          if (par%hysteresis) call take_branch(from, cuts(i)%time, course, it)
-         if (it%consistent) end_shift = change_of_cut(par, it, cuts(i))
+         if (it%consistent) then
+            end_shift = change_of_cut(par, it, cuts(i))
+            call begin_stretch(it%inc, end_shift, it%sens)
+         end if
          call integrate_phase(par, end_shift, it)
          if (it%status%code /= MUD_OK) return
          if (cuts(i)%turns) call turn_around(course, it)
