@@ -231,7 +231,7 @@ MUTATIONS = [
      (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
     ("the place where a drift ends is not located", (EVENTS, "possible = trial%drifts", "possible = .false.")),
     ("the kink of preloading at D = 0 is not located", (EVENTS, "possible = trial%w(1)%preloaded .and.", "possible = .false. .and.")),
-    ("a drift leaves its beginning where it was", (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%eps")),
+    ("a drift leaves its beginning where it was", (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%r_in = memory%r_in + 0.0_wp*r\n      memory%eps")),
     ("sizes of substeps follow the increment",
      (SUBSTEPPING, "max(rest/number_of_pieces(rest/h), par%h_min)", "h + 0*number_of_pieces(rest)")),
     ("shear inside the elastic domain with the modulus at the stress",
