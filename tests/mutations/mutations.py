@@ -8,6 +8,7 @@ TRANSIENT, INSIDE_DOMAIN = "core/integration/mud_transient.f90", "core/integrati
 SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial.f90"
 RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
+SUBSTEPPING = "core/integration/mud_substepping.f90"
 BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_event_time.f90"
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
@@ -223,12 +224,16 @@ MUTATIONS = [
     ("a straight strain without the centre's part in its derivative",
      (INCREMENT, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
     ("a switch of the isotropic mechanism that does not move",
-     (EVENT_TABLE, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
+     (EVENT_TABLE, "BEFORE, .true., EXACT, EXACT_TRIALS), &         ! the iso", "BEFORE, .false., EXACT, EXACT_TRIALS), &         ! the iso")),
     ("noise at what the isotropic mechanism remembers is a reversal",
      (ISOTROPIC_MEMORY, "turns = inc%rests\n", "turns = .false.\n")),
     ("shear that turns just below the isotropic memory is noise",
      (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
-    ("the place where a drift ends is not located", (EVENTS, "FEW_STARTS = 1", "FEW_STARTS = 0")),
+    ("the place where a drift ends is not located", (EVENTS, "possible = trial%drifts", "possible = .false.")),
+    ("the kink of preloading at D = 0 is not located", (EVENTS, "possible = trial%w(1)%preloaded .and.", "possible = .false. .and.")),
+    ("a drift leaves its beginning where it was", (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%r_in = memory%r_in + 0.0_wp*r\n      memory%eps")),
+    ("sizes of substeps follow the increment",
+     (SUBSTEPPING, "max(rest/number_of_pieces(rest/h), par%h_min)", "h + 0*number_of_pieces(rest)")),
     ("shear inside the elastic domain with the modulus at the stress",
      (INCREMENT, "g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)", "g = 2.0_wp*w%g")),
     ("no change of the modulus at the centre with the void ratio",

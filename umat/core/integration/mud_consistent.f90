@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. The jumps of memory, the
 !> share of an increment inside the elastic domain and the times of events (mud_event_time) are differentiated. Sizes
-!> of substeps are frozen but for those that end at an event and for the last, which ends where the increment ends:
-!> behind an event all substeps begin later by its shift. In the limit of small substeps that is the saltation term
-!> (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
+!> of substeps are frozen but for those that end at an event, for the last, which ends where the increment ends, and for
+!> those that divide the rest: behind an event all substeps begin later by its shift. In the limit of small substeps
+!> that is the saltation term (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
 module mud_consistent
    use mud_kinds, only: wp
    use mud_loading, only: loading_t
@@ -49,7 +49,6 @@ module mud_consistent
       type(tensors_t) :: r_in                !< derivatives of the memory
       real(wp) :: r_before(DIRECTIONS, 6)    !< derivatives of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< derivatives of the pseudo-time where the next substep begins
-      real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
       !> Derivatives of the memories of interrupted processes; those up to number `settled` were there when the
       !> increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
@@ -60,6 +59,7 @@ module mud_consistent
       !> Derivatives of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts.
       real(wp) :: margin(DIRECTIONS)
       real(wp) :: parts(DIRECTIONS)          !< derivatives of the void ratio at which the grains of a held point part
+      real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
       type(driving_t) :: driving
       type(fading_t) :: fading               !< derivatives of what fades of the rates, where that is known
    end type sensitivity_t
@@ -107,8 +107,11 @@ contains
 
       sens%log_chi0 = sens%y(:, Y_LOG_CHI)
       sens%y(:, Y_CONTRACTION) = 0.0_wp
-      dh = h*sens%stretch
-      if (last) dh = end_shift - sens%shift
+      if (trial%divides .or. last) then
+         dh = (h/(inc%to - trial%time))*(end_shift - sens%shift)
+      else
+         dh = h*sens%stretch
+      end if
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, sens%parts, trial%y0(1:6), trial%time, h, sens%shift, dh, &
                                    sens%driving, sens%y)

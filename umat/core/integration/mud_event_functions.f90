@@ -6,7 +6,7 @@ module mud_event_functions
    use mud_critical_state, only: bounding_ratio
    use mud_cutoff, only: rate_without_past, height, closing_function
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
-      EVENT_TURN, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS, RATE_THERE, RATE_IF_CLOSED
+      EVENT_TURN, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS, EVENT_DILATES, RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
    use mud_isotropic_memory, only: drive_of_margin, margin_after
    use mud_params, only: params_t
@@ -95,6 +95,8 @@ contains
          f = drive_of_margin(par, inc, time, w)
       case (EVENT_MECHANISM)
          f = w%iso_drive/trial%w(1)%iso_drive
+      case (EVENT_DILATES)
+         f = w%d/trial%w(1)%d
       case (EVENT_TURN)
          f = projection_on_chord(par, place_of(par, inc, trial, w, y))
       case (EVENT_RETURN)

@@ -10,7 +10,7 @@ module mud_event_table
    private
    public :: event_t, EVENTS, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
-             EVENT_TURN, EVENT_PARTS, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS
+             EVENT_TURN, EVENT_PARTS, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS, EVENT_DILATES
 
    ! in the order in which they are looked for
    integer, parameter :: EVENT_NONE = 0
@@ -19,12 +19,13 @@ module mud_event_table
    integer, parameter :: EVENT_CLOSES = 3     !< p' would rise from p_min.
    integer, parameter :: EVENT_BOUNDS = 4     !< r exceeds the bounding surface inside the elastic domain.
    integer, parameter :: EVENT_MECHANISM = 5  !< The isotropic mechanism begins or ends to act while suction changes.
-   integer, parameter :: EVENT_YIELD = 6      !< Compression reaches what the isotropic mechanism remembers.
-   integer, parameter :: EVENT_UNLOAD = 7     !< Compression ceases; the isotropic mechanism remembers how far it came.
-   integer, parameter :: EVENT_REVERSAL = 8   !< (r - r_in):n falls to -x_rev.
-   integer, parameter :: EVENT_RETURN = 9     !< r reaches the target of an interrupted process.
-   integer, parameter :: EVENT_FORWARDS = 10  !< A process that drifts back from its beginning goes forwards.
-   integer, parameter :: EVENT_TURN = 11      !< A process ceases to go forwards; its substep goes on.
+   integer, parameter :: EVENT_DILATES = 6    !< Contraction turns to dilation or back, with cyclic preloading.
+   integer, parameter :: EVENT_YIELD = 7      !< Compression reaches what the isotropic mechanism remembers.
+   integer, parameter :: EVENT_UNLOAD = 8     !< Compression ceases; the isotropic mechanism remembers how far it came.
+   integer, parameter :: EVENT_REVERSAL = 9   !< (r - r_in):n falls to -x_rev.
+   integer, parameter :: EVENT_RETURN = 10     !< r reaches the target of an interrupted process.
+   integer, parameter :: EVENT_FORWARDS = 11  !< A process that drifts back from its beginning goes forwards.
+   integer, parameter :: EVENT_TURN = 12      !< A process ceases to go forwards; its substep goes on.
 
    integer, parameter :: NO_RATE = 0          !< The function looks at the state alone.
    integer, parameter :: RATE_THERE = 1       !< The function looks at the rate there.
@@ -62,10 +63,11 @@ module mud_event_table
       event_t(HELD, RATE_IF_CLOSED, BEYOND, .true., EXACT, EXACT_TRIALS), &      ! closes
       event_t(ELASTIC, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                 ! exceeds the bounding surface
       event_t(ORDINARY, RATE_THERE, BEFORE, .true., EXACT, EXACT_TRIALS), &         ! the isotropic mechanism switches
+      event_t(ORDINARY, RATE_THERE, BEFORE, .true., EXACT, EXACT_TRIALS), &         ! contraction turns to dilation
       event_t(ORDINARY .or. ELASTIC, NO_RATE, BEYOND, .true., EXACT, EXACT_TRIALS), &     ! isotropic mechanism yields
       event_t(ORDINARY .or. ELASTIC, RATE_THERE, BEYOND, .false., EXACT, EXACT_TRIALS), & ! and unloads
       event_t(ORDINARY, RATE_THERE, AT, .true., EXACT, EXACT_TRIALS), &             ! reverses
       event_t(ORDINARY, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                ! returns
-      event_t(ORDINARY, RATE_THERE, AT, .true., NEARLY, 4), &                       ! goes forwards
+      event_t(ORDINARY, RATE_THERE, AT, .true., EXACT, 8), &                        ! goes forwards
       event_t(NOBODY, RATE_THERE, AT, .false., NEARLY, FEW_TRIALS)]                 ! ceases to go forwards
 end module mud_event_table

@@ -12,7 +12,7 @@ module mud_event_time
    use mud_error_control, only: changes_root
    use mud_event_functions, only: psi_at
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, &
-      EVENT_YIELD, EVENT_MECHANISM, EVENT_FORWARDS, NO_RATE, RATE_THERE, RATE_IF_CLOSED
+      EVENT_YIELD, EVENT_MECHANISM, EVENT_DILATES, EVENT_FORWARDS, NO_RATE, RATE_THERE, RATE_IF_CLOSED
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -23,7 +23,7 @@ module mud_event_time
    use mud_tensor, only: ddot, trace, contractions, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t
    use mud_linearise, only: linearised_t, changes_t
-   use mud_vector, only: NY
+   use mud_vector, only: NY, Y_LOG_CHI, Y_CONTRACTION
    implicit none (type, external)
    private
    public :: move_event
@@ -124,6 +124,12 @@ contains
                               rates)
          slopes = changes_of_iso_drive(par, w, lin, void_ratio_at(inc, time), y, driving%d_strain, &
                                        driving%from_centre, changes, rates)
+      case (EVENT_DILATES)
+         ! L times the change of D is the change of what the present process or all of them contract
+         call changes_of_rate(par, w, lin, .false., y, r_in, driving%d_strain, driving%from_centre, changes, .false., &
+                              rates)
+         slopes = rates(:, Y_CONTRACTION)
+         if (w%d < 0.0_wp) slopes = rates(:, Y_LOG_CHI)
       case (EVENT_YIELD)
          slopes = margin + changes_of_measure(par, inc, time, trial%y(1:6), y(:, 1:3), changes%e, changes%p_c, &
                                               changes%scans, changes%turn)

@@ -5,7 +5,7 @@ module mud_events
    use mud_error_control, only: changes_root
    use mud_event_functions, only: rate_at_end, place_of, backwards
    use mud_event_table, only: EVENTS, EVENT_NONE, EVENT_OPENS, EVENT_PARTS, EVENT_CLOSES, EVENT_MECHANISM, &
-      EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
+      EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS, EVENT_TURN
    use mud_increment, only: increment_t, rate_of, store_rate
    use mud_integration, only: integration_t
    use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
@@ -14,7 +14,6 @@ module mud_events
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_return_point, only: place_t, projection_on_chord, note_progress, note_farthest
-   use mud_reversal, only: drags_memory
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
    use mud_trial, only: trial_t, take_step
@@ -29,8 +28,6 @@ module mud_events
    !> A margin of the isotropic memory that a substep exceeds by less than this share of the tolerance, or a drive that
    !> leads as far below it, is not looked at [-].
    real(wp), parameter :: SMALL_MARGIN = 0.01_wp
-   !> So many of an increment are located: where rates chatter there would be one after another.
-   integer, parameter :: FEW_STARTS = 1
    !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
    real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
 contains
@@ -85,6 +82,9 @@ contains
             else
                possible = .false.
             end if
+         case (EVENT_DILATES)
+            possible = trial%w(1)%preloaded .and. error > SHARP_KINK*par%tolerance
+            if (possible) possible = switches(trial%w(1)%d, trial%w(inc%scheme%stages)%d)
          case (EVENT_YIELD)
             possible = inc%rests
             if (possible) possible = margin_after(par, inc, trial, h) > SMALL_MARGIN*par%tolerance
@@ -108,10 +108,9 @@ contains
          case (EVENT_RETURN)
             possible = trial%watched > 0
          case (EVENT_FORWARDS)
-            possible = drags_memory(par) .and. trial%w(1)%loading .and. .not. trial%advanced
-            if (possible) possible = trial%starts < FEW_STARTS .and. backwards(trial%w(1)) > 0.0_wp .and. &
-                                     (inc%scheme%first_same_as_last .or. &
-                                      backwards(trial%w(inc%scheme%stages)) <= 0.0_wp)
+            possible = trial%drifts
+            if (possible) possible = inc%scheme%first_same_as_last .or. &
+                                     backwards(trial%w(inc%scheme%stages)) <= 0.0_wp
          end select
       end associate
    end subroutine look_ahead
@@ -124,18 +123,23 @@ contains
       type(trial_t), intent(in) :: trial
 
       mechanism_switches = inc%suction%bonds .and. abs(inc%d_pc) > 0.0_wp
-      if (.not. mechanism_switches) return
-      associate (first => trial%w(1)%iso_drive, last => trial%w(inc%scheme%stages)%iso_drive)
-         mechanism_switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)
-      end associate
+      if (mechanism_switches) &
+         mechanism_switches = switches(trial%w(1)%iso_drive, trial%w(inc%scheme%stages)%iso_drive)
    end function mechanism_switches
+
+   !> True where a number changes its sign in a substep that does not begin there.
+   pure logical function switches(first, last)
+      real(wp), intent(in) :: first, last
+
+      switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)
+   end function switches
 
    !> True where a reversal inside the substep is possible: (r - r_in):n is beyond -x_rev at its last stage, or would be
    !> if it went on at twice the rate with which the substep begins. A parabola that comes back falls a quarter as far.
    !> Where it stays between 0 and -x_rev, as in soil that hardly moves, nothing is looked for. A process that drifts
    !> backwards from its beginning (softening outside the bounding surface) is not looked at: there the floor makes the
-   !> rates independent of the memory, and it is enough to begin anew where a substep begins. Without any
-   !> guard that is so everywhere.
+   !> rates independent of the memory, and it is enough to take the beginning along, or to begin anew where a substep
+   !> begins. Without any guard the latter is so everywhere.
    pure logical function may_reverse(par, inc, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

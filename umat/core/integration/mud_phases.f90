@@ -2,8 +2,8 @@
 !> An increment as a list of phases. Where suction turns, passes zero or a kink of S_w, and where the strain leaves the
 !> elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
 module mud_phases
-   use mud_branches, only: course_t, list_kinks, take_branch, turn_around, MAX_KINKS
    use mud_consistent, only: begin_stretch
+   use mud_branches, only: course_t, list_kinks, take_branch, turn_around, MAX_KINKS
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
    use mud_increment, only: increment_t, take_phase, suction_at, end_in_domain, SHORTEST_PHASE
    use mud_integration, only: integration_t
@@ -36,7 +36,7 @@ contains
       integer :: i, n
 
       call list_cuts(par, it%inc, course, cuts, n)
-      it%trial%starts = 0
+      it%trial%divides = .false.
       from = 0.0_wp
       do i = 1, n
          call take_phase(par, from, cuts(i)%time, it%inc)

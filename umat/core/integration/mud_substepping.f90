@@ -2,7 +2,7 @@
 !> The substeps of a phase.
 module mud_substepping
    use mud_kinds, only: wp
-   use mud_consistent, only: propagate, changes_of_contraction, changes_at_memory
+   use mud_consistent, only: propagate, changes_of_contraction, changes_at_memory, changes_of_ratio
    use mud_driving, only: DIRECTIONS
    use mud_error_control, only: control_t, judge_attempt, proposal
    use mud_event_table, only: EVENTS, EVENT_NONE
@@ -17,7 +17,7 @@ module mud_substepping
    use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
    use mud_rates, only: MODE_ORDINARY
-   use mud_tensor, only: ddot, is_finite, all_finite
+   use mud_tensor, only: ddot, is_finite, all_finite, tensors_t, ANY_TENSORS
    use mud_trace, only: SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transient, only: find_transient
    use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
@@ -41,6 +41,9 @@ module mud_substepping
    !> Turn of the domain, some degrees, from which on the higher order follows it: it is a transient that modified Euler
    !> pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
+   !> The rest of a phase is divided into a whole number of pieces up to FEW, beyond into a power of the FEW-th root of
+   !> 2. A piece may be STRETCHED times as long as error control proposes, whose margin is a tenth [-].
+   real(wp), parameter :: FEW = 6.0_wp, STRETCHED = 1.06_wp
    !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. It is
    !> longer, in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine: what the fading parts of
    !> the rates leave is of the angle's third power [-].
@@ -109,6 +112,7 @@ contains
          step%h = max(step%h, par%h_min)
          call choose_order(par, rest, step%h, merge(0.0_wp, par%second_share, step%turns), it%inc, it%trial)
          h = step%h
+         if (it%trial%divides .and. h < rest) h = max(rest/number_of_pieces(rest/h), par%h_min)
          if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
          if (it%trial%relaxation%speed > 0.0_wp) then
             it%trial%transient%known = .false.
@@ -143,6 +147,20 @@ contains
       end do
    end subroutine try_substep
 
+   !> Number of pieces of the rest of a phase for the number n that error control proposes [-]. It is one of few, so
+   !> that a small change of the increment does not change the sizes of its substeps, as shares of the rest: the
+   !> consistent tangent freezes these, and where errors grow from substep to substep that would show.
+   !> docs/theory/integration.md section 3.
+   pure real(wp) function number_of_pieces(n) result(pieces)
+      real(wp), intent(in) :: n
+
+      if (n <= FEW) then
+         pieces = real(ceiling(n/STRETCHED), wp)
+      else
+         pieces = 2.0_wp**(real(nint(FEW*log(n)/log(2.0_wp)), wp)/FEW)
+      end if
+   end function number_of_pieces
+
    !> Takes over a substep h that ends at a pseudo-time, at an event or not; its derivatives first.
    pure subroutine leave_substep(par, end_shift, time, h, error, it)
       type(params_t), intent(in) :: par
@@ -158,6 +176,8 @@ contains
          if (par%preloading) call changes_of_contraction(it%trial, it%state%memory%chi_own, it%sens)
       end if
       call accept_substep(par, h, it)
+      if (it%trial%drifts .and. it%consistent) &
+         it%sens%r_in = tensors_t(changes_of_ratio(par, it%state%sigma, it%sens%y), ANY_TENSORS)
       if (par%remembers .and. it%consistent) then
          if (it%state%margin >= 0.0_wp) call changes_at_memory(par, it%inc, time, it%state%sigma, it%sens)
       end if
