@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The mutations: (title, (file below umat, text that stands there once, its replacement), ...)."""
 
-TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"
+TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/mud_point.f90"
 DIRECTION, EQUATION = "core/rates/mud_direction.f90", "core/rates/mud_direction_equation.f90"
 INCREMENT, REVERSAL = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90"
 TRANSIENT, INSIDE_DOMAIN = "core/integration/mud_transient.f90", "core/integration/mud_inside_domain.f90"
 SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial.f90"
 RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
-BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_event_time.f90"
+BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/tangent/mud_event_time.f90"
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
 EVENT_TABLE = "core/integration/mud_event_table.f90"
@@ -18,9 +18,11 @@ FLUIDITY = "core/laws/mud_fluidity.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/laws/mud_params.f90", "core/base/mud_registry.f90", "core/laws/mud_state.f90"
-CONSISTENT = "core/integration/mud_consistent.f90"
+CONSISTENT, HELD = "core/tangent/mud_consistent.f90", "core/tangent/mud_held.f90"
+FOLLOW, FADING = "core/tangent/mud_follow.f90", "core/tangent/mud_fading.f90"
+LOADING_CHANGES, INSIDE_CHANGES = "core/tangent/mud_loading_changes.f90", "core/tangent/mud_inside_changes.f90"
 ORDER, ERROR_CONTROL = "core/integration/mud_order.f90", "core/integration/mud_error_control.f90"
-DRIVING = "core/integration/mud_driving.f90"
+DRIVING = "core/tangent/mud_driving.f90"
 MARGIN = "core/laws/mud_margin.f90"
 SCANNING, BRANCHES = "core/laws/mud_scanning.f90", "core/integration/mud_branches.f90"
 
@@ -92,10 +94,10 @@ MUTATIONS = [
     ("the coupling blocks do not know the turn",
      (BRANCHES, "with_turn = change(1)*course%with_increment", "with_turn = 0.0_wp*change(1)")),
     ("the stress does not know that a turn moves the scanning branch",
-     (BRANCHES, "it%sens%driving%scans = it%inc%suction%scanning%moves", "it%sens%driving%scans = .false.")),
+     (FOLLOW, "sens%driving%scans = inc%suction%scanning%moves", "sens%driving%scans = .false.")),
     ("the stress does not know when S_w has a kink",
-     (PHASES, "change = change_of_passing(it%inc, cut%time, par%suction%omega, it%sens%driving)",
-      "change = 0.0_wp*change_of_passing(it%inc, cut%time, par%suction%omega, it%sens%driving)")),
+     (FOLLOW, "change = change_of_passing(inc, cut%time, par%suction%omega, sens%driving)",
+      "change = 0.0_wp*change_of_passing(inc, cut%time, par%suction%omega, sens%driving)")),
     ("the curvature of a scanning branch without the change of its weight",
      (RETENTION, "along%bend = bend*weight**2 + at%slope*q*weight*rest", "along%bend = bend*weight**2")),
     ("wetting curves above drying are accepted",
@@ -124,7 +126,7 @@ MUTATIONS = [
     ("no contraction cap", (EQUATION, "par%cap_d*eq%two_g/eq%k_e", "1.0e9_wp*eq%two_g/eq%k_e")),
     ("softening cap twice as large", (EQUATION, "limit = eq%least_h*positive", "limit = 2.0_wp*eq%least_h*positive")),
     ("first root found taken",
-     (DIRECTION, "if (.not. w%several) return", "if (.not. w%several .or. last > 0.0_wp) return")),
+     (DIRECTION, "if (w%several .or. .not. found) call scan", "if (.not. found) call scan")),
     ("no look at the floor before a rising (r - r_in):n",
      (DIRECTION, "single_root = side*there%residual < 0.0_wp", "single_root = there%scale > 0.0_wp")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
@@ -192,7 +194,7 @@ MUTATIONS = [
      (EVENT_TIME, "sens%shift(j) = sens%shift(j) + dh", "sens%shift(j) = sens%shift(j) + 0.0_wp*dh")),
     ("a reversal in a jump is timed like others", (EVENT_TIME, "FOUND = 1.0e-6_wp", "FOUND = 1.0e9_wp")),
     ("a held point does not follow the strain",
-     (CUTOFF, "change = dr0 + deviator(stiffness*d_strain)", "change = dr0 + 0.0_wp*deviator(stiffness*d_strain)")),
+     (HELD, "change = dr0 + deviator(stiffness*d_strain)", "change = dr0 + 0.0_wp*deviator(stiffness*d_strain)")),
     ("hysteresis the other way round", (TRANSITIONS, "%x >= -par%x_rev .and. it%event", "%x >= par%x_rev .and. it%event")),
     ("reversals never found", (TRANSITIONS, "%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL", "%x >= -huge(1.0_wp)")),
     # integration
@@ -221,7 +223,7 @@ MUTATIONS = [
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
     ("a straight strain without the centre's part in its derivative",
-     (INCREMENT, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
+     (LOADING_CHANGES, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
     ("a switch of the isotropic mechanism that does not move",
      (EVENT_TABLE, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
     ("noise at what the isotropic mechanism remembers is a reversal",
@@ -234,13 +236,13 @@ MUTATIONS = [
     ("no change of the modulus at the centre with the void ratio",
      (ELASTIC, "slopes(2) = slopes(2) + by_e_centre*(1.0_wp + e_centre)/(1.0_wp + e)", "slopes(2) = slopes(2)")),
     ("a substep inside the elastic domain that does not move the stress with its start",
-     (INSIDE_DOMAIN, "dp = per_e*(share*(root/par%k_0) + de/e - de_end/e_end)", "dp = -per_e*de_end/e_end")),
+     (INSIDE_CHANGES, "dp = per_e*(share*(root/par%k_0) + de/e - de_end/e_end)", "dp = -per_e*de_end/e_end")),
     ("a straight strain that loads across nu from the start",
-     (INCREMENT, "loading%of_strain = 1.0_wp - decay", "loading%of_strain = 1.0_wp")),
+     (LOADING_CHANGES, "loading%of_strain = 1.0_wp - decay", "loading%of_strain = 1.0_wp")),
     ("what fades is not taken from the changes of rates",
-     (TRANSIENT, "factors = factors - weight*[left(i), left(i)**2]", "factors = factors - 0.0_wp*weight*[left(i), left(i)**2]")),
+     (FADING, "factors = factors - weight*[left(i), left(i)**2]", "factors = factors - 0.0_wp*weight*[left(i), left(i)**2]")),
     ("what fades does not change with the pseudo-time",
-     (TRANSIENT, "along(:, 1) = along(:, 1) - weight*d_left(:, i)", "along(:, 1) = along(:, 1) - 0.0_wp*weight*d_left(:, i)")),
+     (FADING, "along(:, 1) = along(:, 1) - weight*d_left(:, i)", "along(:, 1) = along(:, 1) - 0.0_wp*weight*d_left(:, i)")),
     ("no bounding surface inside the elastic domain", (EVENT_FUNCTIONS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the elastic domain ends",
      (DRIVING, "driving%exit = changes_of_exit", "driving%exit = 0.0_wp*changes_of_exit")),

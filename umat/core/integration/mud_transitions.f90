@@ -5,14 +5,13 @@ module mud_transitions
    use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
    use mud_kinds, only: wp
    use mud_bounding, only: excess
-   use mud_consistent, only: jump_of_memory, changes_of_parting, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_cutoff, only: landed, may_open, closing_mode, closes, parting, gap_at, MODE_HELD
    use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS
    use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_YIELD, EVENT_REVERSAL, EVENT_RETURN, &
       EVENT_FORWARDS
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
-   use mud_integration, only: integration_t
+   use mud_integration, only: integration_t, note_jump, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_params, only: params_t
    use mud_preloading, only: log_contraction, NO_CONTRACTION
    use mud_rate, only: rate_t
@@ -25,23 +24,9 @@ module mud_transitions
    use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
-   public :: begin_phase, begin_substep, accept_substep, rate_is_known
+   public :: begin_substep, accept_substep, rate_is_known
 
 contains
-   !> Sets what a trial holds before the first substep of an increment or phase. Its stress and rate are those of
-   !> begin_substep.
-   pure subroutine begin_phase(it)
-      type(integration_t), intent(inout) :: it
-
-      it%known = .false.
-      it%event = EVENT_NONE
-      it%trial%pressed = .false.
-      it%trial%relaxation%speed = 0.0_wp
-      it%trial%transient%sought = .false.
-      it%trial%transient%known = .false.
-      it%trial%openings = 0
-   end subroutine begin_phase
-
    !> Decides what the coming substep is - ordinary, elastic or held by the tension cut-off - applies the memory rule,
    !> and leaves the first rate in the trial. docs/theory/integration.md section 1, docs/theory/memory-rules.md section
    !> 3.5, docs/theory/material.md section 6.
@@ -50,8 +35,15 @@ contains
       type(integration_t), intent(inout) :: it
       real(wp) :: p, r(6), outwards
 
+      it%trial%time = it%reached
+      it%trial%y0(1:6) = it%state%sigma
+      it%trial%y0(Y_Z:Y_Z_END) = it%state%z
+      it%trial%y0(Y_SHEAR:Y_CONTRACTION) = 0.0_wp
+      it%trial%y0(Y_FLUIDITY) = it%state%fluidity
+      it%trial%e = it%state%e
       if (par%remembers) call begin_below_memory(it)
       it%jump = JUMP_NONE
+      it%n_jumps = 0
       it%trial%watched = 0
       it%trial%advanced = .false.
       call stress_ratio(par, it%state%sigma, p, r)
@@ -97,6 +89,7 @@ contains
       type(integration_t), intent(inout) :: it
 
       it%trial%r_in = it%state%memory%r_in
+      it%trial%chi_own = it%state%memory%chi_own
       if (par%preloading) it%trial%y0(Y_LOG_CHI) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
    end subroutine take_memory
 
@@ -130,17 +123,6 @@ contains
       call rate_of(par, it%inc, it%trial%time, it%trial%y0, it%trial%r_in, it%trial%mode, it%trial%w(1), it%counters)
    end subroutine first_rate
 
-   !> Derivatives of the memory across its jump, which `trigger` made.
-   pure subroutine follow_jump(par, before, trigger, it)
-      type(params_t), intent(in) :: par
-      type(memory_t), intent(in) :: before
-      type(rate_t), intent(in) :: trigger
-      type(integration_t), intent(inout) :: it
-
-      if (it%consistent) &
-         call jump_of_memory(par, it%inc, it%jump, before, it%state%memory, trigger, it%trial, it%sens)
-   end subroutine follow_jump
-
    !> True after a substep whose last rate is the first of the next, or which is held and does not close at its end.
    !> docs/theory/integration.md section 2.
    pure logical function rate_is_known(it)
@@ -157,7 +139,6 @@ contains
       type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: r(6)
       type(memory_t) :: before
-      type(rate_t) :: trigger
       real(wp) :: t(6)
       logical :: noise
 
@@ -177,13 +158,11 @@ contains
          end if
       end if
       it%counters%reset = it%counters%reset + 1
-      it%jump = JUMP_REVERSAL
-      trigger = it%trial%w(1)
       before = it%state%memory
-      call begin_process(par, r, trigger%n, t, it%state%memory)
-      call follow_jump(par, before, trigger, it)
+      call begin_process(par, r, it%trial%w(1)%n, t, it%state%memory)
+      call note_jump(JUMP_REVERSAL, before, it)
       call take_memory(par, it)
-      if (stays_floored(trigger, it%trial%r_in) .and. .not. par%preloading) then
+      if (stays_floored(it%trial%w(1), it%trial%r_in) .and. .not. par%preloading) then
          it%trial%w(1)%r_moved = 0.0_wp
          it%trial%w(1)%x = 0.0_wp
       else
@@ -210,7 +189,6 @@ contains
       logical, intent(in) :: landed          !< On the target: rounding does not count.
       real(wp), intent(in) :: r(6), t(6)
       type(memory_t) :: before
-      type(rate_t) :: trigger
       logical :: reached
 
       reached = landed
@@ -220,11 +198,9 @@ contains
          it%trial%process = it%state%memory%interrupted(it%trial%watched)
          if (.not. reached) reached = beyond_target(par, it%trial%process, r, it%trial%w(1)%m_b) >= 0.0_wp
          if (.not. reached) return
-         it%jump = JUMP_RETURN
          before = it%state%memory
          call resume_process(it%trial%watched, r, t, it%state%memory)
-         trigger = it%trial%w(1)
-         call follow_jump(par, before, trigger, it)
+         call note_jump(JUMP_RETURN, before, it)
          call take_memory(par, it)
          call first_rate(par, it)
          reached = .false.
@@ -238,7 +214,6 @@ contains
       type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: r(6)
       type(memory_t) :: before
-      type(rate_t) :: trigger
 
       it%trial%watched = 0
       it%inc%rests = .false.
@@ -255,14 +230,12 @@ contains
       if (it%state%open) then
          it%trial%mode = MODE_HELD
          it%trial%parts = parting(par, it%state)
-         if (it%consistent .and. it%state%gap <= 0.0_wp) call changes_of_parting(it%inc, it%trial, it%state%e, it%sens)
          return
       end if
-      it%jump = JUMP_NEW
       before = it%state%memory
       it%state%memory = new_memory(r)
-      trigger = it%trial%w(1)
-      call follow_jump(par, before, trigger, it)
+      it%trial%chi_own = it%state%memory%chi_own
+      call note_jump(JUMP_NEW, before, it)
    end subroutine try_to_close
 
    !> Takes over an accepted substep; state already has its void ratio and suction. With the tension cut-off on, a mean

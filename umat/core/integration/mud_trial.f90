@@ -43,6 +43,8 @@ module mud_trial
       type(transient_t) :: transient     !< Parts of the rates that fade; those in w are without them.
       real(wp) :: parts             !< Void ratio at which the grains of a held point part [-].
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
+      real(wp) :: e                 !< Void ratio at y0 [-].
+      real(wp) :: chi_own           !< Contraction of the present process at y0 [-].
       real(wp) :: margin            !< Margin of the isotropic memory at y0; read where the mechanism rests [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
       type(interrupted_t) :: process   !< The interrupted process of that number.

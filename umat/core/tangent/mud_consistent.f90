@@ -5,14 +5,19 @@
 !> behind an event all substeps begin later by its shift. In the limit of small substeps that is the saltation term
 !> (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
 module mud_consistent
+   use mud_integration, only: JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_kinds, only: wp
    use mud_loading, only: loading_t
-   use mud_cutoff, only: changes_through_hold, MODE_HELD
+   use mud_loading_changes, only: changes_of_loading_strain
+   use mud_isotropic_memory, only: margins_at_stages
+   use mud_margin_changes, only: changes_of_measure, changes_by_shear
+   use mud_cutoff, only: MODE_HELD
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
-   use mud_isotropic_memory, only: margins_at_stages, changes_of_measure, changes_by_shear
+   use mud_fading, only: fading_t, NO_FADING, begin_fading, change_of_left, add_changes_of_faded
    use mud_fluidity, only: recovery
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, live_numbers
-   use mud_inside_domain, only: changes_inside
+   use mud_held, only: changes_through_hold
+   use mud_increment, only: increment_t, void_ratio_at, suction_at, live_numbers
+   use mud_inside_changes, only: changes_inside
    use mud_params, only: params_t
    use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
@@ -24,8 +29,7 @@ module mud_consistent
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
    use mud_tensor, only: IDENTITY, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
-   use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, change_of_left, &
-      add_changes_of_faded
+   use mud_transient, only: without_turn, half_way
    use mud_trial, only: trial_t
    use mud_linearise, only: linearised_t, linearise, changes_t
    use mud_vector, only: NY, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
@@ -33,12 +37,7 @@ module mud_consistent
    private
    public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, changes_of_contraction, jump_of_memory, &
              changes_of_parting, change_with_size, changes_at_memory, changes_along, changes_of_ratio, &
-             linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-
-   integer, parameter :: JUMP_NONE = 0
-   integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
-   integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
-   integer, parameter :: JUMP_NEW = 3        !< The point leaves the tension cut-off: no past.
+             linearise_stage
 
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
@@ -49,6 +48,7 @@ module mud_consistent
       type(tensors_t) :: r_in                !< derivatives of the memory
       real(wp) :: r_before(DIRECTIONS, 6)    !< derivatives of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< derivatives of the pseudo-time where the next substep begins
+      real(wp) :: end_shift(DIRECTIONS)      !< derivatives of the pseudo-time where the phase ends
       real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
       !> Derivatives of the memories of interrupted processes; those up to number `settled` were there when the
       !> increment began.
@@ -90,17 +90,17 @@ contains
       real(wp), intent(in) :: end_shift(DIRECTIONS)
       type(sensitivity_t), intent(inout) :: sens
 
+      sens%end_shift = end_shift
       sens%stretch = (end_shift - sens%shift)/(inc%to - inc%from)
    end subroutine begin_stretch
 
-   !> Carries the derivatives through an accepted substep h, the last one of a phase or not. The end of a phase has a
-   !> pseudo-time that changes by end_shift. h and end_shift are shares of inc [-]. docs/theory/integration.md section
-   !> 5.3.
-   pure subroutine propagate(par, inc, trial, h, last, end_shift, sens)
+   !> Carries the derivatives through an accepted substep h, a share of inc [-], the last one of a phase or not.
+   !> docs/theory/integration.md section 5.3.
+   pure subroutine propagate(par, inc, trial, h, last, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h, end_shift(DIRECTIONS)
+      real(wp), intent(in) :: h
       logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dh(DIRECTIONS), rates(DIRECTIONS, NY, MAX_STAGES)
@@ -108,7 +108,7 @@ contains
       sens%log_chi0 = sens%y(:, Y_LOG_CHI)
       sens%y(:, Y_CONTRACTION) = 0.0_wp
       dh = h*sens%stretch
-      if (last) dh = end_shift - sens%shift
+      if (last) dh = sens%end_shift - sens%shift
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, sens%parts, trial%y0(1:6), trial%time, h, sens%shift, dh, &
                                    sens%driving, sens%y)
@@ -129,16 +129,15 @@ contains
       sens%shift = sens%shift + dh
    end subroutine propagate
 
-   !> Derivatives of what an accepted substep leaves of the contraction of the present process, whose share was chi_own.
-   !> Derivative of note_contraction of mud_reversal.
-   pure subroutine changes_of_contraction(trial, chi_own, sens)
+   !> Derivatives of what an accepted substep leaves of the contraction of the present process. Derivative of
+   !> note_contraction of mud_reversal.
+   pure subroutine changes_of_contraction(trial, sens)
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: chi_own   !< before it [-]
       type(sensitivity_t), intent(inout) :: sens
 
       if (trial%mode == MODE_HELD) return
       sens%chi_own = exp(min(trial%y(Y_LOG_CHI) - trial%y0(Y_LOG_CHI), 0.0_wp)) &
-                     *(sens%chi_own + chi_own*(sens%y(:, Y_LOG_CHI) - sens%log_chi0)) + sens%y(:, Y_CONTRACTION)
+                     *(sens%chi_own + trial%chi_own*(sens%y(:, Y_LOG_CHI) - sens%log_chi0)) + sens%y(:, Y_CONTRACTION)
    end subroutine changes_of_contraction
 
    !> Derivatives of the contraction across a jump of the memory from `before` to `after`. A process that is interrupted
@@ -429,18 +428,17 @@ contains
                                      changes%loading)
    end subroutine changes_along
 
-   !> Changes of the void ratio at which the grains of a point part that has no gap: where that is its void ratio e, it
+   !> Changes of the void ratio at which the grains of a point part that has no gap: where that is its void ratio, it
    !> changes with it. docs/theory/material.md section 6.4.
-   pure subroutine changes_of_parting(inc, trial, e, sens)
+   pure subroutine changes_of_parting(inc, trial, sens)
       type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial     !< begins to be held
-      real(wp), intent(in) :: e              !< [-]
+      type(trial_t), intent(in) :: trial     !< held
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dp_c(DIRECTIONS)
 
       sens%parts = 0.0_wp
-      if (e < trial%parts) return
-      call change_of_place(inc, trial%time, e, sens%shift, sens%driving, sens%parts, dp_c)
+      if (trial%e < trial%parts) return
+      call change_of_place(inc, trial%time, trial%e, sens%shift, sens%driving, sens%parts, dp_c)
    end subroutine changes_of_parting
 
    !> Changes of the stress ratio with the stress. sigma and y(:, 1:6) [kPa], dr [-]. Where p' is held at p_min its

@@ -2,18 +2,19 @@
 !> Derivative of the time of an event inside an increment, from the event's function: with it the substep that ends
 !> there changes its size.
 module mud_event_time
-   use mud_isotropic_memory, only: changes_of_measure
    use mud_kinds, only: wp
-   use mud_bounding, only: change_of_psi, change_of_excess
+   use mud_bounding_changes, only: change_of_psi, change_of_excess
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
    use mud_critical_state, only: bounding_ratio, bounding_slope
-   use mud_cutoff, only: changes_of_height, closing_mode, rate_without_past, change_of_closing_rate, MODE_HELD
+   use mud_cutoff, only: closing_mode, rate_without_past, MODE_HELD
    use mud_driving, only: driving_t, DIRECTIONS
    use mud_error_control, only: changes_root
    use mud_event_functions, only: psi_at
    use mud_event_table, only: EVENTS, EVENT_OPENS, EVENT_PARTS, EVENT_BOUNDS, EVENT_REVERSAL, EVENT_RETURN, &
       EVENT_YIELD, EVENT_MECHANISM, EVENT_FORWARDS, NO_RATE, RATE_THERE, RATE_IF_CLOSED
+   use mud_held, only: changes_of_height, change_of_closing_rate
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
+   use mud_margin_changes, only: changes_of_measure
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows
