@@ -34,7 +34,7 @@ def check_way(goal, folder, count):
 
 
 def test_the_calls_from_umat_to_the_direction_equation_are_those_of_the_tour():
-    check_way("the direction equation", "umat", ("Twelve", 12))
+    check_way("the direction equation", "umat", ("Eleven", 11))
 
 
 def test_the_calls_from_the_host_to_a_law_are_those_of_the_tour():
