@@ -6,7 +6,7 @@ from checking import check, root
 
 COLUMNS = 120
 SHOWN = 30  # findings that are printed of one rule
-LAYERS = ["base", "laws", "rates", "integration", "tangent", "core"]  # folders of the core, lowest first
+LAYERS = ["base", "laws", "options", "rates", "integration", "tangent", "core"]  # folders of the core, lowest first
 
 USE = re.compile(r"^\s*use\b\s*(,\s*(non_)?intrinsic\s*)?(::)?\s*(\w+)\s*(,\s*only\s*:)?", re.IGNORECASE)
 HEAD = re.compile(r"^\s*((?:(?:\w+\s*\([^()]*\)|[\w*]+)\s+)*?)(function|subroutine)\s+(\w+)\s*\(", re.IGNORECASE)

@@ -10,8 +10,8 @@ from test_architecture import code_lines, root, shown, sources, uses
 HOST = ("host/base", "host/time", "host/mesh", "host/element", "host/solver", "host/contact", "host/scene",
         "host/model", "host/terms", "host/setup", "host/run", "host/output", "host")
 GROUPS = {
-    "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/rates", "umat/core/integration", "umat/core/tangent",
-                   "umat/core"), ()),
+    "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/options", "umat/core/rates", "umat/core/integration",
+                   "umat/core/tangent", "umat/core"), ()),
     "umat/abi": (("umat/abi",), ("umat/core",)),
     "umat/tables": (("umat/tables",), ("umat/core",)),
     "umat/include": (("umat/include",), ()),

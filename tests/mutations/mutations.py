@@ -13,8 +13,8 @@ CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landi
 EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
 EVENT_TABLE = "core/integration/mud_event_table.f90"
 ISOTROPIC_MEMORY = "core/integration/mud_isotropic_memory.f90"
-PRELOADING = "core/laws/mud_preloading.f90"
-FLUIDITY = "core/laws/mud_fluidity.f90"
+PRELOADING = "core/options/mud_preloading.f90"
+FLUIDITY, OPTIONS = "core/options/mud_fluidity.f90", "core/options/mud_options.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/laws/mud_params.f90", "core/base/mud_registry.f90", "core/laws/mud_state.f90"
@@ -145,26 +145,27 @@ MUTATIONS = [
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
     ("forget to zero the plastic shear at a reversal",
-     (REVERSAL, "memory%chi_own = 0.0_wp\n      memory%eps_q_p = 0.0_wp",
-      "memory%chi_own = 0.0_wp\n      memory%eps_q_p = memory%eps_q_p")),
+     (REVERSAL, "call begin_past(memory)\n      memory%eps_q_p = 0.0_wp",
+      "call begin_past(memory)\n      memory%eps_q_p = memory%eps_q_p")),
     # cyclic preloading
     ("preloading by all contraction", (PRELOADING, "log(chi - chi_own)", "log(chi)")),
     ("preloading to the first power", (PRELOADING, "d = g*g*positive(d)", "d = g*positive(d)")),
     ("preloading dilates less too", (PRELOADING, "d = g*g*positive(d) - positive(-d)", "d = g*g*d + 0.0_wp*positive(d)")),
     ("preloading does not stiffen", (PRELOADING, "h_b = g**(2.0_wp*preloading%s)*h_b", "h_b = h_b + 0.0_wp*g")),
     ("a process keeps the contraction of the one before",
-     (REVERSAL, "memory%chi_own = 0.0_wp\n      memory%eps_q_p", "memory%eps_q_p")),
+     (OPTIONS, "memory%chi_own = 0.0_wp\n   end subroutine begin_past", "memory%chi_own = memory%chi_own\n   end subroutine begin_past")),
     ("a return does not give back contraction",
-     (RETURN_POINT, "memory%chi_own = min(process%chi, memory%chi)", "memory%chi_own = 0.0_wp*process%chi")),
+     (OPTIONS, "memory%chi_own = min(memory%interrupted(k)%chi, memory%chi)",
+      "memory%chi_own = 0.0_wp*memory%interrupted(k)%chi")),
     # fluidity
     ("fluidity has no threshold", (FLUIDITY, "below = max(1.0_wp - p/par%p_ell, 0.0_wp)", "below = 1.0_wp - p/par%p_ell")),
     ("fluidity falls off as the first power of p'", (FLUIDITY, "fluidity%weight = below*below", "fluidity%weight = below")),
     ("fluidity without a largest value", (FLUIDITY, "growth = par%c_ell*fluidity%weight*(1.0_wp - fluidity%ell/par%ell_max)", "growth = par%c_ell*fluidity%weight")),
     ("an increase of volume takes fluidity away", (FLUIDITY, "par%r_ell*max(d_v, 0.0_wp)", "par%r_ell*abs(d_v)")),
-    ("fluidity softens dilatancy alone", (RATES, "w%b_0 = w%fluid%factor*w%b_0", "w%b_0 = w%b_0 + 0.0_wp*w%fluid%factor")),
+    ("fluidity softens dilatancy alone", (OPTIONS, "b_0 = own%fluidity%factor*b_0", "b_0 = b_0 + 0.0_wp*own%fluidity%factor")),
     ("the tangent does not know how fluidity changes", (FLUIDITY, "fluidity%by_ell = -fluidity%factor*fluidity%weight", "fluidity%by_ell = 0.0_wp")),
     ("the tangent does not know the threshold of fluidity", (FLUIDITY, "fluidity%weight_by_p = -2.0_wp*below/par%p_ell", "fluidity%weight_by_p = 0.0_wp")),
-    ("fluidity stays where it was", (TRANSITIONS, "min(max(it%trial%y(Y_FLUIDITY), 0.0_wp), par%ell_max)", "min(max(it%trial%y0(Y_FLUIDITY), 0.0_wp), par%ell_max)")),
+    ("fluidity stays where it was", (OPTIONS, "min(max(y(Y_FLUIDITY), 0.0_wp), par%ell_max)", "min(max(y0(Y_FLUIDITY), 0.0_wp), par%ell_max)")),
     ("threshold weight on the wrong memory", (REVERSAL, "*(memory%r_before - r)", "*(memory%r_in - r)")),
     ("no fall-back of the threshold rule", (REVERSAL, "if (ddot(r - r_in, n) < 0.0_wp) r_in = r", "continue")),
     ("repositioning with the process that ends",

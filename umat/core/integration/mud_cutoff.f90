@@ -12,13 +12,13 @@ module mud_cutoff
    use mud_critical_state, only: critical_void_ratio
    use mud_elastic, only: shear_modulus, STIFF_ABOVE
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
+   use mud_options, only: forget_past
    use mud_params, only: params_t
-   use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_state, only: state_t, counters_t
    use mud_tensor, only: IDENTITY, trace, deviator, norm
-   use mud_vector, only: NY, Y_LOG_CHI
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: MODE_HELD
@@ -189,7 +189,7 @@ contains
 
       call stress_ratio(par, y(1:6), p, r)
       virgin = y
-      virgin(Y_LOG_CHI) = NO_CONTRACTION
+      call forget_past(virgin)
       call rate_of(par, inc, time, virgin, r, closing_mode(inc), w, counters)
    end subroutine rate_without_past
 

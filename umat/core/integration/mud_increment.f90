@@ -7,16 +7,16 @@ module mud_increment
    use mud_tensor, only: ddot, trace, norm
    use mud_bonding, only: suction_law_t, is_bonded, bonding
    use mud_elastic, only: centre_modulus
-   use mud_fluidity, only: recovery
+   use mud_options, only: add_volume_rates
    use mud_rate, only: rate_t
    use mud_rates, only: rate_at, conditions_t, MODE_ORDINARY, MODE_ELASTIC
    use mud_elastic_domain, only: loading_direction, exit_share
    use mud_substep, only: scheme_t, SCHEMES
-   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_OPTIONS
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, end_in_domain, volume_from_centre, direction_at, void_ratio_at, &
-             suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, live_numbers, &
+             suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, &
              SHORTEST_PHASE, STRAIGHT
 
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
@@ -72,7 +72,7 @@ contains
       else
          call rate_at(par, y, at, inc%d_strain, inc%d_pc, mode, w, near)
       end if
-      if (par%fluid) w%d_ell = w%d_ell - recovery(par, inc%d_v)*y(Y_FLUIDITY)
+      call add_volume_rates(par, inc%d_v, y, w%d_own)
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
       if (w%capped_d) counters%cap_d = counters%cap_d + 1
@@ -80,15 +80,6 @@ contains
       if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
-
-   !> Number of entries of the integrated vector that may change: those of effects that are off stand last.
-   pure integer function live_numbers(par) result(n)
-      type(params_t), intent(in) :: par
-
-      n = Y_SHEAR
-      if (par%preloading) n = Y_CONTRACTION
-      if (par%fluid) n = Y_FLUIDITY
-   end function live_numbers
 
    !> A rate as one of the integrated vector. sigma' [kPa], the others [-], per unit of pseudo-time.
    pure subroutine store_rate(w, dy)
@@ -98,9 +89,7 @@ contains
       dy(1:6) = w%d_sigma
       dy(Y_Z:Y_Z_END) = w%d_z
       dy(Y_SHEAR) = w%d_eps_q
-      dy(Y_LOG_CHI) = w%d_log_chi
-      dy(Y_CONTRACTION) = w%d_chi_own
-      dy(Y_FLUIDITY) = w%d_ell
+      dy(Y_OPTIONS:) = w%d_own
    end subroutine store_rate
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.

@@ -4,13 +4,13 @@
 !> section 4.3.
 module mud_inside_domain
    use mud_elastic, only: bulk_modulus, pressure_root, centre_modulus, compressed
-   use mud_fluidity, only: recovery
    use mud_increment, only: increment_t, void_ratio_at, volume_from_centre
    use mud_kinds, only: wp
+   use mud_options, only: move_numbers
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio, p_follows, MODE_ELASTIC
    use mud_tensor, only: IDENTITY, deviator
-   use mud_vector, only: NY, Y_FLUIDITY
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: has_closed_form, move_inside
@@ -48,6 +48,6 @@ contains
       y(1:6) = deviator(y(1:6)) + (2.0_wp*h*centre_modulus(par, e, k, volume_from_centre(inc, time))) &
                *deviator(inc%d_strain) &
                + compressed(par, pressure_root(par, e, k), log(e/void_ratio_at(inc, time + h)))*IDENTITY
-      if (par%fluid) y(Y_FLUIDITY) = y(Y_FLUIDITY)*exp(-h*recovery(par, inc%d_v))
+      call move_numbers(par, inc%d_v, h, y)
    end subroutine move_inside
 end module mud_inside_domain

@@ -6,6 +6,7 @@ module mud_start
    use mud_checks, only: check_stress
    use mud_critical_state, only: state_parameter
    use mud_cutoff, only: lifted, soil_void_ratio
+   use mud_options, only: new_numbers
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_retention, only: saturation_t, saturation, log_suction
@@ -46,8 +47,7 @@ contains
       end if
       state%e = e
       state%gap = 0.0_wp
-      state%margin = 0.0_wp
-      state%fluidity = 0.0_wp
+      call new_numbers(state)
       state%p_c = p_c
       state%z = 0.0_wp
       state%from_centre = 0.0_wp

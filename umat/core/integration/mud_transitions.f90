@@ -12,16 +12,16 @@ module mud_transitions
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
    use mud_integration, only: integration_t, note_jump, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   use mud_options, only: begin_numbers, take_past, forget_past, past_counts, keep_numbers
    use mud_params, only: params_t
-   use mud_preloading, only: log_contraction, NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
    use mud_return_point, only: watched_process, beyond_target, resume_process
-   use mud_reversal, only: new_memory, begin_process, accept_process, note_contraction
+   use mud_reversal, only: new_memory, begin_process, accept_process
    use mud_state, only: memory_t
    use mud_tensor, only: ddot
-   use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
    public :: begin_substep, accept_substep, rate_is_known
@@ -38,8 +38,8 @@ contains
       it%trial%time = it%reached
       it%trial%y0(1:6) = it%state%sigma
       it%trial%y0(Y_Z:Y_Z_END) = it%state%z
-      it%trial%y0(Y_SHEAR:Y_CONTRACTION) = 0.0_wp
-      it%trial%y0(Y_FLUIDITY) = it%state%fluidity
+      it%trial%y0(Y_SHEAR) = 0.0_wp
+      call begin_numbers(it%state, it%trial%y0)
       it%trial%e = it%state%e
       if (par%remembers) call begin_below_memory(it)
       it%jump = JUMP_NONE
@@ -89,8 +89,7 @@ contains
       type(integration_t), intent(inout) :: it
 
       it%trial%r_in = it%state%memory%r_in
-      it%trial%chi_own = it%state%memory%chi_own
-      if (par%preloading) it%trial%y0(Y_LOG_CHI) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
+      call take_past(par, it%state%memory, it%trial%y0, it%trial%past)
    end subroutine take_memory
 
    !> Below what it remembers the isotropic mechanism rests. A rate that is known is that of what it did before.
@@ -162,7 +161,7 @@ contains
       call begin_process(par, r, it%trial%w(1)%n, t, it%state%memory)
       call note_jump(JUMP_REVERSAL, before, it)
       call take_memory(par, it)
-      if (stays_floored(it%trial%w(1), it%trial%r_in) .and. .not. par%preloading) then
+      if (stays_floored(it%trial%w(1), it%trial%r_in) .and. .not. past_counts(par)) then
          it%trial%w(1)%r_moved = 0.0_wp
          it%trial%w(1)%x = 0.0_wp
       else
@@ -222,7 +221,7 @@ contains
          it%trial%w(1)%no_root = .false.
       else
          it%trial%r_in = r
-         if (par%preloading) it%trial%y0(Y_LOG_CHI) = NO_CONTRACTION
+         call forget_past(it%trial%y0)
          it%trial%mode = closing_mode(it%inc)
          call first_rate(par, it)
          it%state%open = .not. closes(it%inc, it%trial%openings, it%trial%w(1))
@@ -234,7 +233,7 @@ contains
       end if
       before = it%state%memory
       it%state%memory = new_memory(r)
-      it%trial%chi_own = it%state%memory%chi_own
+      call take_past(par, it%state%memory, it%trial%y0, it%trial%past)
       call note_jump(JUMP_NEW, before, it)
    end subroutine try_to_close
 
@@ -254,11 +253,7 @@ contains
       end if
       it%state%z = it%trial%y(Y_Z:Y_Z_END)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(Y_SHEAR)
-      ! a scheme's weights may leave rounding of either sign
-      if (par%fluid) it%state%fluidity = min(max(it%trial%y(Y_FLUIDITY), 0.0_wp), par%ell_max)
-      if (par%preloading) &
-         call note_contraction(it%trial%y(Y_LOG_CHI) - it%trial%y0(Y_LOG_CHI), it%trial%y(Y_CONTRACTION), &
-                               it%state%memory)
+      call keep_numbers(par, it%trial%y0, it%trial%y, it%state)
       if (it%inc%rests) then
          it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
          if (it%event == EVENT_YIELD) it%state%margin = 0.0_wp

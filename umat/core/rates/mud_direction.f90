@@ -199,9 +199,9 @@ contains
       ! Always floored (on less than a right angle x cannot become positive between two negative ends), or never near.
       single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp .or. &
                     min(arc%x_t, w%x) > 2.0_wp*par%x_floor
-      ! the preloading bends the residual wherever x changes
-      if (w%preloaded) single_root = max(arc%x_t, w%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
-      if (w%preloaded) return
+      ! an option that bends D and 1/h with x bends the residual wherever x changes
+      if (w%own%bends) single_root = max(arc%x_t, w%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
+      if (w%own%bends) return
       x_q = side*arc%x_q
       if (single_root .or. at%cosine < NOT_FAR .or. at%cosine*x_q < abs(at%sine)*arc%x_t) return
       single_root = w%floored .or. arc%x_t >= par%x_floor
@@ -367,7 +367,7 @@ contains
       d_lode = 0.0_wp
       if (par%lode) d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
       dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
-      if (w%preloaded) dd = dd + s%d_x*dx
+      if (w%own%bends) dd = dd + s%d_x*dx
       dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode
       d_beta = w%k_e*(dh*w%d + w%h_b*dd)
       d_gamma = 2.0_wp/3.0_wp*w%p*w%m_b*d_lode + 2.0_wp*w%g*dh

@@ -7,7 +7,7 @@ module mud_direction_equation
    use mud_flow, only: dilatancy
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_preloading, only: preloading_t, preloading_of, preload
+   use mud_options, only: bend_t, bend_of, bend, bend_of_hardening
    use mud_rate, only: moduli_t, rate_t
    implicit none (type, external)
    private
@@ -25,8 +25,8 @@ module mud_direction_equation
       real(wp) :: x_floor         !< x_0 [-]
       real(wp) :: most_d          !< D r:n of the contraction cap [-]
       real(wp) :: least_h         !< 2/3 p'/(1 - kappa_c) of the softening cap, 0: off [kPa]
-      logical :: preloaded        !< Other processes have left contraction; `preloading` is set then.
-      type(preloading_t) :: preloading
+      logical :: bends            !< An option bends D and 1/h with x; `with_x` is set then.
+      type(bend_t) :: with_x
    end type equation_t
 
    !> Slopes of D by r:n, z:n, its surface, G and K_e, and of 1/h by these (with what D does to the softening cap), by
@@ -34,9 +34,9 @@ module mud_direction_equation
    type :: slopes_t
       real(wp) :: d_r, d_z, d_r_d, d_g, d_k
       real(wp) :: h_r, h_z, h_r_d, h_g, h_k, h_x, h_r_b, h_p, h_b_0
-      !> D by x, and D and 1/h by ln(w/chi') of the preloading; 0 without it.
+      !> D by x, and D and 1/h by ln q/x**2 of an option that bends with q; 0 without it.
       real(wp) :: d_x, d_q, h_q
-      real(wp) :: d_ln, h_ln   !< both by ln of the fluidity's factor, which v of the preloading does not feel
+      real(wp) :: d_ln, h_ln   !< both by ln of the factor with which an option softens, which q does not feel
    end type slopes_t
 contains
    !> Direction equation of a rate whose state, moduli and choice of the isotropic mechanism are known; units as in
@@ -56,9 +56,8 @@ contains
       eq%x_floor = par%x_floor
       eq%most_d = merge(par%cap_d*eq%two_g/eq%k_e, NO_LIMIT, par%cap_d > 0.0_wp)
       eq%least_h = merge(eq%two_thirds_p/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
-      eq%preloaded = w%preloaded
-      if (.not. w%preloaded) return
-      eq%preloading = preloading_of(par, w%chi, w%m_d/w%m_b, w%a_0, w%b_0)
+      eq%bends = w%own%bends
+      if (eq%bends) eq%with_x = bend_of(par, w%own, w%m_d/w%m_b, w%a_0, w%b_0)
    end function equation_of
 
    !> D, 1/h, beta and gamma in a direction, and the guards that act there, from r:n, (r - r_in):n, A_d and |r| on both
@@ -71,7 +70,7 @@ contains
 
       d = dilatancy(m%a_d, m%r_d, m%r_n)
       h_b = larger(m%x, eq%x_floor)*eq%per_b_0
-      if (eq%preloaded) call preload(eq%preloading, larger(m%x, eq%x_floor), d, h_b, m%f_chi, m%f_slope)
+      if (eq%bends) call bend(eq%with_x, larger(m%x, eq%x_floor), d, h_b, m%bent, m%bend_slope)
       m%d = smaller(d, eq%most_d/larger(m%r_n, NEGLIGIBLE))
       stiffness = eq%two_g - eq%k_e*m%d*m%r_n
       limit = eq%least_h*positive(m%r_n - m%r_b)/larger(stiffness, NEGLIGIBLE*eq%two_g)
@@ -109,12 +108,12 @@ contains
          s%d_r = -at%a_d
          s%d_r_d = at%a_d
          if (par%fabric .and. at%z_n > 0.0_wp) s%d_z = w%a_0*(at%r_d - at%r_n)
-         if (w%preloaded .and. at%d > 0.0_wp) then
-            f = at%f_chi
+         if (w%own%bends .and. at%d > 0.0_wp) then
+            f = at%bent
             s%d_r = f*s%d_r
             s%d_r_d = f*s%d_r_d
             s%d_z = f*s%d_z
-            s%d_q = at%f_slope*at%d
+            s%d_q = at%bend_slope*at%d
             s%d_x = 2.0_wp*s%d_q*per_x
          end if
       end if
@@ -143,8 +142,8 @@ contains
          s%h_x = merge(0.0_wp, 1.0_wp/w%b_0, at%floored)
          s%h_b_0 = -at%h_b/w%b_0
          s%h_ln = -at%h_b
-         if (w%preloaded) then
-            s%h_q = par%s_chi*at%f_slope*at%h_b
+         if (w%own%bends) then
+            s%h_q = bend_of_hardening(par, at%bend_slope)*at%h_b
             s%h_x = (at%h_b + 2.0_wp*s%h_q)*per_x
          end if
       end if

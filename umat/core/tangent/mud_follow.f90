@@ -2,8 +2,8 @@
 !> The derivatives of the consistent tangent follow an update: they read what it left of a phase, a turn of suction, a
 !> substep, and nothing of theirs goes back; docs/theory/integration.md section 5.3.
 module mud_follow
-   use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_of_contraction, changes_at_memory, &
-      changes_of_parting, jump_of_memory
+   use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_at_memory, changes_of_parting, &
+      jump_of_memory
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
    use mud_event_table, only: EVENTS
@@ -11,6 +11,7 @@ module mud_follow
    use mud_increment, only: increment_t
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
+   use mud_options, only: keep_past_changes
    use mud_params, only: params_t
    use mud_phases, only: cut_t, CUT_TURN, CUT_NO_SUCTION, CUT_EXIT, CUT_KINK
    implicit none (type, external)
@@ -79,7 +80,7 @@ contains
          call propagate(par, it%inc, trial, h, it%reached >= it%inc%to, sens)
          if (EVENTS(it%event)%moves .and. it%reached < it%inc%to) &
             call move_event(par, it%inc, it%event, trial, h, sens)
-         if (par%preloading) call changes_of_contraction(trial, sens)
+         if (trial%mode /= MODE_HELD) call keep_past_changes(par, trial%y0, trial%y, trial%past, sens%y, sens%past)
       end associate
       if (par%remembers .and. it%state%margin >= 0.0_wp) &
          call changes_at_memory(par, it%inc, it%reached, it%state%sigma, sens)

@@ -4,13 +4,13 @@
 module mud_inside_changes
    use mud_driving, only: driving_t, change_of_place, DIRECTIONS
    use mud_elastic, only: bulk_modulus, pressure_root, changed_centre_modulus, compressed
-   use mud_fluidity, only: recovery
    use mud_increment, only: increment_t, void_ratio_at, volume_from_centre
    use mud_kinds, only: wp
+   use mud_options, only: changes_of_moved
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio, p_follows
    use mud_tensor, only: deviator
-   use mud_vector, only: NY, Y_FLUIDITY
+   use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: changes_inside
@@ -47,11 +47,6 @@ contains
          y(:, i) = y(:, i) + d_e(i)*dg + (2.0_wp*g*h)*driving%d_strain%of(:, i)
          if (i <= 3) y(:, i) = y(:, i) + (dp - mean - (2.0_wp/3.0_wp*g*h)*driving%d_v)
       end do
-      if (par%fluid) then
-         y(:, Y_FLUIDITY) = exp(-h*recovery(par, inc%d_v)) &
-                            *(y(:, Y_FLUIDITY) - (y0(Y_FLUIDITY)*recovery(par, inc%d_v))*dh)
-         if (inc%d_v > 0.0_wp) y(:, Y_FLUIDITY) = y(:, Y_FLUIDITY) - (y0(Y_FLUIDITY)*h*par%r_ell &
-                                                                      *exp(-h*recovery(par, inc%d_v)))*driving%d_v
-      end if
+      call changes_of_moved(par, inc%d_v, h, y0, dh, driving%d_v, y)
    end subroutine changes_inside
 end module mud_inside_changes

@@ -50,7 +50,7 @@ contains
 
       associate (s => turn%slopes)
          d_n = s%d_r*w%r
-         if (w%preloaded) d_n = d_n + s%d_x*w%r_moved
+         if (w%own%bends) d_n = d_n + s%d_x*w%r_moved
          h_n = s%h_r*w%r + s%h_x*w%r_moved
          if (par%fabric) then
             d_n = d_n + s%d_z*w%z
