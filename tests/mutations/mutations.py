@@ -10,8 +10,9 @@ RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integratio
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
 BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/tangent/mud_event_time.f90"
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
-EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
-EVENT_TABLE = "core/integration/mud_event_table.f90"
+EVENT_BOUNDS, EVENT_CLOSES = "core/integration/mud_event_bounds.f90", "core/integration/mud_event_closes.f90"
+EVENT_FORWARDS, EVENT_REVERSAL = "core/integration/mud_event_forwards.f90", "core/integration/mud_event_reversal.f90"
+EVENT_MECHANISM = "core/integration/mud_event_mechanism.f90"
 ISOTROPIC_MEMORY = "core/integration/mud_isotropic_memory.f90"
 PRELOADING = "core/options/mud_preloading.f90"
 FLUIDITY, OPTIONS = "core/options/mud_fluidity.f90", "core/options/mud_options.f90"
@@ -187,13 +188,13 @@ MUTATIONS = [
      (RETURN_POINT, "min(process%target, target_limit(par, process)*m_b)", "process%target")),
     ("return_point takes the harder memory", (RETURN_POINT, ">= ddot(r - memory%r_in, t))", "< ddot(r - memory%r_in, t))")),
     ("return_point restores no target", (RETURN_POINT, "memory%target = process%target", "memory%target = memory%target")),
-    ("no reversal inside a substep", (EVENTS, "may_reverse = last%loading .and.", "may_reverse = .false. .and.")),
+    ("no reversal inside a substep", (EVENT_REVERSAL, "may_reverse = last%loading .and.", "may_reverse = .false. .and.")),
     ("reversals are looked for wherever x is below zero",
-     (EVENTS, "(last%x < -par%x_rev .or.", "(last%x < 0.0_wp .or.")),
+     (EVENT_REVERSAL, "(last%x < -par%x_rev .or.", "(last%x < 0.0_wp .or.")),
     ("an event's time is frozen", (EVENT_TIME, "dh = -slopes(j)/slopes(BY_SIZE)", "dh = 0.0_wp*slopes(j)")),
     ("substeps behind an event keep their place",
      (EVENT_TIME, "sens%shift(j) = sens%shift(j) + dh", "sens%shift(j) = sens%shift(j) + 0.0_wp*dh")),
-    ("a reversal in a jump is timed like others", (EVENT_TIME, "FOUND = 1.0e-6_wp", "FOUND = 1.0e9_wp")),
+    ("a reversal in a jump is timed like others", (EVENT_REVERSAL, "FOUND = 1.0e-6_wp", "FOUND = 1.0e9_wp")),
     ("a held point does not follow the strain",
      (HELD, "change = dr0 + deviator(stiffness*d_strain)", "change = dr0 + 0.0_wp*deviator(stiffness*d_strain)")),
     ("hysteresis the other way round", (TRANSITIONS, "%x >= -par%x_rev .and. it%event", "%x >= par%x_rev .and. it%event")),
@@ -216,7 +217,7 @@ MUTATIONS = [
     ("closing remembers the gap", (TRANSITIONS, "it%state%memory = new_memory(r)", "it%state%memory%depth = it%state%memory%depth")),
     ("open stress ratio beyond the bounding surface", (BOUNDING, "if (beyond > 0.0_wp) r_limited", "if (beyond > 1.0e9_wp) r_limited")),
     ("an open point never closes",
-     (CUTOFF, "closing_rate(inc, openings, w) <= 0.0_wp", "closing_rate(inc, openings, w) <= huge(1.0_wp)")),
+     (EVENT_CLOSES, "closing_rate(inc, openings, w) <= 0.0_wp", "closing_rate(inc, openings, w) <= huge(1.0_wp)")),
     ("tension is not reported", (POINT, "if (has_tension(it%state%sigma)) it%counters%tensile = 1", "continue")),
     # elastic domain
     ("the elastic domain forgets the strain inside",
@@ -226,12 +227,12 @@ MUTATIONS = [
     ("a straight strain without the centre's part in its derivative",
      (LOADING_CHANGES, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
     ("a switch of the isotropic mechanism that does not move",
-     (EVENT_TABLE, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
+     (EVENT_MECHANISM, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
     ("noise at what the isotropic mechanism remembers is a reversal",
      (ISOTROPIC_MEMORY, "turns = inc%rests\n", "turns = .false.\n")),
     ("shear that turns just below the isotropic memory is noise",
      (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
-    ("the place where a drift ends is not located", (EVENTS, "FEW_STARTS = 1", "FEW_STARTS = 0")),
+    ("the place where a drift ends is not located", (EVENT_FORWARDS, "FEW_STARTS = 1", "FEW_STARTS = 0")),
     ("shear inside the elastic domain with the modulus at the stress",
      (INCREMENT, "g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)", "g = 2.0_wp*w%g")),
     ("no change of the modulus at the centre with the void ratio",
@@ -244,7 +245,7 @@ MUTATIONS = [
      (FADING, "factors = factors - weight*[left(i), left(i)**2]", "factors = factors - 0.0_wp*weight*[left(i), left(i)**2]")),
     ("what fades does not change with the pseudo-time",
      (FADING, "along(:, 1) = along(:, 1) - weight*d_left(:, i)", "along(:, 1) = along(:, 1) - 0.0_wp*weight*d_left(:, i)")),
-    ("no bounding surface inside the elastic domain", (EVENT_FUNCTIONS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
+    ("no bounding surface inside the elastic domain", (EVENT_BOUNDS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the elastic domain ends",
      (DRIVING, "driving%exit = changes_of_exit", "driving%exit = 0.0_wp*changes_of_exit")),
     # kinks of suction, and the step control

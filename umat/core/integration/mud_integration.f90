@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> State of the integration of an increment on its way.
 module mud_integration
-   use mud_event_table, only: EVENT_NONE
+   use mud_event, only: EVENT_NONE
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_rate, only: rate_t

@@ -3,7 +3,7 @@
 module mud_substepping
    use mud_kinds, only: wp
    use mud_error_control, only: control_t, judge_attempt, proposal
-   use mud_event_table, only: EVENT_NONE
+   use mud_event, only: EVENT_NONE
    use mud_events, only: stop_at_event
    use mud_increment, only: increment_t, void_ratio_at, suction_at, direction_at
    use mud_integration, only: integration_t, record

@@ -5,10 +5,11 @@ module mud_transitions
    use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
    use mud_kinds, only: wp
    use mud_bounding, only: excess
-   use mud_cutoff, only: landed, may_open, closing_mode, closes, parting, gap_at, MODE_HELD
-   use mud_event_functions, only: elastic_rate, psi_at, LARGEST_EXCESS
-   use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_YIELD, EVENT_REVERSAL, EVENT_RETURN, &
-      EVENT_FORWARDS
+   use mud_cutoff, only: landed, may_open, parting, gap_at, MODE_HELD
+   use mud_event, only: elastic_rate, psi_at, EVENT_NONE, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS
+   use mud_event_bounds, only: LARGEST_EXCESS
+   use mud_event_closes, only: closing_mode, closes
+   use mud_event_table, only: event_happened
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
    use mud_integration, only: integration_t, note_jump, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
@@ -254,15 +255,9 @@ contains
       it%state%z = it%trial%y(Y_Z:Y_Z_END)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(Y_SHEAR)
       call keep_numbers(par, it%trial%y0, it%trial%y, it%state)
-      if (it%inc%rests) then
-         it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
-         if (it%event == EVENT_YIELD) it%state%margin = 0.0_wp
-      end if
+      if (it%inc%rests) it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
       it%state%sigma = landed(par, it%state%sigma)
-      if (it%event == EVENT_FORWARDS) it%trial%starts = it%trial%starts + 1
-      if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
-      ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface
-      if (it%event == EVENT_BOUNDS) it%trial%pressed = .true.
+      call event_happened(it%event, it%trial, it%state)
       if (it%trial%mode == MODE_ORDINARY) then
          associate (w => it%trial%w(latest_forwards(it)))
             call accept_process(w%loading, w%x, it%trial%y(Y_SHEAR), it%state%memory)

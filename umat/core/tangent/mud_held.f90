@@ -1,34 +1,24 @@
 ! SPDX-License-Identifier: MIT
-!> Changes of a point held by the tension cut-off and of the functions of its events; derivatives of
-!> docs/theory/material.md section 6.
+!> Changes of a point held by the tension cut-off; derivatives of docs/theory/material.md section 6.
 module mud_held
    use mud_bonding, only: suction_law_t
    use mud_bounding, only: psi_of, excess
    use mud_bounding_changes, only: change_of_psi, change_of_excess, change_of_limited
-   use mud_cutoff, only: slide, soil_void_ratio, closing_share
+   use mud_cutoff, only: slide, soil_void_ratio
    use mud_driving, only: driving_t, change_of_place, DIRECTIONS
-   use mud_elastic, only: bulk_slope, shear_modulus, shear_slope
+   use mud_elastic, only: shear_modulus, shear_slope
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_rate, only: rate_t
    use mud_state, only: state_t
-   use mud_tensor, only: ddot, trace, deviator, norm
+   use mud_tensor, only: trace, deviator, norm
    use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: changes_of_height, changes_through_hold, held_tangent, change_of_closing_rate
+   public :: changes_through_hold, held_tangent
 
    real(wp), parameter :: ON_SURFACE = 1.0e-12_wp   !< r this close (relative) to the bounding surface is on it [-].
 contains
-   !> Changes of the height of p' above p_min with those of the stress, times 3 p_min. In the unit of p_atm.
-   pure function changes_of_height(y) result(changes)
-      real(wp), intent(in) :: y(DIRECTIONS, NY)
-      real(wp) :: changes(DIRECTIONS)
-
-      changes = y(:, 1) + y(:, 2) + y(:, 3)
-   end function changes_of_height
-
    !> Derivatives of the stress through that substep: its start moves by `shift` in pseudo-time, its size changes by dh.
    !> sigma' and y(:, 1:6) in the unit of p_atm. Derivative of docs/theory/material.md section 6.2.
    pure subroutine changes_through_hold(par, inc, parts, dparts, sigma, time, h, shift, dh, driving, y)
@@ -86,22 +76,6 @@ contains
       unit = 0.0_wp
       dsig_dpc = par%p_min*held_rate(par, inc%suction, e, state%p_c, r, follows, sliding, unit, 1.0_wp)
    end subroutine held_tangent
-
-   !> Change of closing_rate with the rate of p', the void ratio, the strain and the suction step [kPa]. e, de and
-   !> d_strain [-], d_rate and d_pc [kPa]; e is the void ratio at the place. Derivative of docs/theory/material.md
-   !> sections 6.1, 6.3.
-   pure real(wp) function change_of_closing_rate(inc, openings, w, e, d_rate, de, d_strain, d_pc) result(change)
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: openings
-      type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: e, d_rate, de, d_strain(6), d_pc
-      real(wp) :: length
-
-      length = inc%length
-      change = w%k*length*de*bulk_slope(e) + sign(1.0_wp, inc%d_pc)*d_pc
-      if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
-      change = d_rate - closing_share(openings)*change
-   end function change_of_closing_rate
 
    !> Change of that stress ratio with r0, with the increment's strain, with void ratio and suction at the end and with
    !> a branch, of ln x of its turn. All [-] but dp_c [kPa]; time and h are shares of inc. Derivative of
