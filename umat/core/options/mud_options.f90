@@ -13,7 +13,7 @@ module mud_options
    use mud_vector, only: NY, Y_OPTIONS, Y_SHEAR
    implicit none (type, external)
    private
-   public :: of_options_t, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, look_at_numbers, &
+   public :: of_options_t, has_numbers, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, look_at_numbers, &
              rates_of_numbers, add_volume_rates, move_numbers
    public :: bend_t, bend_of, bend, bend_of_hardening, changes_of_bend
    public :: past_counts, take_past, forget_past, new_past, begin_past, interrupt_past, resume_past
@@ -46,6 +46,13 @@ contains
       if (par%preloading) n = Y_CONTRACTION
       if (par%fluid) n = Y_FLUIDITY
    end function live_numbers
+
+   !> True where an option with numbers of the vector is on.
+   pure logical function has_numbers(par)
+      type(params_t), intent(in) :: par
+
+      has_numbers = par%preloading .or. par%fluid
+   end function has_numbers
 
    !> Numbers of a point without a past [-].
    pure subroutine new_numbers(state)
