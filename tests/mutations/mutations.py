@@ -8,6 +8,7 @@ TRANSIENT, INSIDE_DOMAIN = "core/integration/mud_transient.f90", "core/integrati
 SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial.f90"
 RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
+SUBSTEPPING = "core/integration/mud_substepping.f90"
 BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/tangent/mud_event_time.f90"
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_BOUNDS, EVENT_CLOSES = "core/integration/mud_event_bounds.f90", "core/integration/mud_event_closes.f90"
@@ -232,7 +233,10 @@ MUTATIONS = [
      (ISOTROPIC_MEMORY, "turns = inc%rests\n", "turns = .false.\n")),
     ("shear that turns just below the isotropic memory is noise",
      (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
-    ("the place where a drift ends is not located", (EVENT_FORWARDS, "FEW_STARTS = 1", "FEW_STARTS = 0")),
+    ("the place where a drift ends is not located", (EVENT_FORWARDS, "may = trial%drifts", "may = .false.")),
+    ("a drift leaves its beginning where it was", (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%eps")),
+    ("sizes of substeps follow the increment",
+     (SUBSTEPPING, "max(rest/number_of_pieces(rest/step%h), par%h_min)", "step%h + 0*number_of_pieces(rest)")),
     ("shear inside the elastic domain with the modulus at the stress",
      (INCREMENT, "g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)", "g = 2.0_wp*w%g")),
     ("no change of the modulus at the centre with the void ratio",

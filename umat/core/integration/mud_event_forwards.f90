@@ -1,33 +1,26 @@
 ! SPDX-License-Identifier: MIT
 !> Event: a process that drifts back from its beginning goes forwards; docs/theory/memory-rules.md section 1.2.
 module mud_event_forwards
-   use mud_event, only: event_t, event_changes_t, RATE_THERE, AT, BY_RATE, ORDINARY, NEARLY
+   use mud_event, only: event_t, event_changes_t, RATE_THERE, AT, BY_RATE, ORDINARY, EXACT
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_reversal, only: drags_memory
    use mud_tensor, only: LANES, contractions, ddot
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: FORWARDS, may_go_forwards, backwards, slopes_of_forwards, went_forwards
+   public :: FORWARDS, may_go_forwards, backwards, slopes_of_forwards
 
    !> The function is `backwards`.
-   type(event_t), parameter :: FORWARDS = event_t(ORDINARY, RATE_THERE, AT, .true., BY_RATE, NEARLY, 4)
-
-   !> So many of an increment are located: where rates chatter there would be one after another.
-   integer, parameter :: FEW_STARTS = 1
+   type(event_t), parameter :: FORWARDS = event_t(ORDINARY, RATE_THERE, AT, .true., BY_RATE, EXACT, 8)
 contains
    !> True of a substep that begins backwards and may end forwards.
-   pure logical function may_go_forwards(par, inc, trial) result(may)
-      type(params_t), intent(in) :: par
+   pure logical function may_go_forwards(inc, trial) result(may)
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
 
-      may = drags_memory(par) .and. trial%w(1)%loading .and. .not. trial%advanced
-      if (may) may = trial%starts < FEW_STARTS .and. backwards(trial%w(1)) > 0.0_wp .and. &
-                     (inc%scheme%first_same_as_last .or. backwards(trial%w(inc%scheme%stages)) <= 0.0_wp)
+      may = trial%drifts
+      if (may) may = inc%scheme%first_same_as_last .or. backwards(trial%w(inc%scheme%stages)) <= 0.0_wp
    end function may_go_forwards
 
    !> Speed at which r moves against the loading direction, times p' [stress]. Without a direction it is backwards.
@@ -49,11 +42,4 @@ contains
       slopes = contractions(c%rates(:, 1:6), w%n) + contractions(c%n, w%d_sigma - w%d_p*r) &
                - w%d_p*contractions(c%r, w%n) - (w%r_n/3.0_wp)*(c%rates(:, 1) + c%rates(:, 2) + c%rates(:, 3))
    end function slopes_of_forwards
-
-   !> One more of the increment is located.
-   pure subroutine went_forwards(trial)
-      type(trial_t), intent(inout) :: trial
-
-      trial%starts = trial%starts + 1
-   end subroutine went_forwards
 end module mud_event_forwards

@@ -52,8 +52,8 @@ contains
    !> if it went on at twice the rate with which the substep begins. A parabola that comes back falls a quarter as far.
    !> Where it stays between 0 and -x_rev, as in soil that hardly moves, nothing is looked for. A process that drifts
    !> backwards from its beginning (softening outside the bounding surface) is not looked at: there the floor makes the
-   !> rates independent of the memory, and it is enough to begin anew where a substep begins. Without any
-   !> guard that is so everywhere.
+   !> rates independent of the memory, and it is enough to take the beginning along, or to begin anew where a substep
+   !> begins. Without any guard the latter is so everywhere.
    pure logical function may_reverse(par, inc, trial)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

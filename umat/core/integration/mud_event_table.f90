@@ -8,7 +8,7 @@ module mud_event_table
       EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN, EVENT_PARTS, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS
    use mud_event_bounds, only: BOUNDS, bounds_function, slopes_of_bounds, bounded
    use mud_event_closes, only: CLOSES_AT, may_close, rate_without_past, closing_function, slopes_of_closing
-   use mud_event_forwards, only: FORWARDS, may_go_forwards, backwards, slopes_of_forwards, went_forwards
+   use mud_event_forwards, only: FORWARDS, may_go_forwards, backwards, slopes_of_forwards
    use mud_event_mechanism, only: MECHANISM, mechanism_may_switch, mechanism_function, slopes_of_mechanism
    use mud_event_opens, only: OPENS, height, slopes_of_opening, opened
    use mud_event_parts, only: PARTS, end_at_parting
@@ -69,7 +69,7 @@ contains
       case (EVENT_RETURN)
          possible = trial%watched > 0
       case (EVENT_FORWARDS)
-         possible = may_go_forwards(par, inc, trial)
+         possible = may_go_forwards(inc, trial)
       end select
    end subroutine look_ahead
 
@@ -192,8 +192,6 @@ contains
          call bounded(trial)
       case (EVENT_YIELD)
          call yielded(state)
-      case (EVENT_FORWARDS)
-         call went_forwards(trial)
       end select
    end subroutine event_happened
 end module mud_event_table

@@ -11,7 +11,7 @@ module mud_reversal
    use mud_tensor, only: ddot
    implicit none (type, external)
    private
-   public :: new_memory, begin_process, accept_process, drags_memory, interrupted_share
+   public :: new_memory, begin_process, accept_process, drag_process, drags_memory, interrupted_share
 contains
    !> Memory of a point that starts at, or comes back without a past to, the stress ratio r. r and all of the memory
    !> [-]. docs/theory/material.md section 1.4.
@@ -64,6 +64,16 @@ contains
       memory%eps_q_p = 0.0_wp
       memory%x_running = 0.0_wp
    end subroutine begin_process
+
+   !> Books an accepted substep with a plastic shear d_eps_q in which a process has drifted back to r and has taken its
+   !> beginning along. All [-]; docs/theory/memory-rules.md section 1.2.
+   pure subroutine drag_process(r, d_eps_q, memory)
+      real(wp), intent(in) :: r(6), d_eps_q
+      type(memory_t), intent(inout) :: memory
+
+      memory%r_in = r
+      memory%eps_q_p = memory%eps_q_p + d_eps_q
+   end subroutine drag_process
 
    !> True where a process that has not gone forwards yet takes its beginning along while it drifts backwards: the rules
    !> that begin anew at r. docs/theory/memory-rules.md section 1.2.

@@ -37,6 +37,9 @@ module mud_substepping
    !> Turn of the domain, some degrees, from which on the higher order follows it: it is a transient that modified Euler
    !> pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
+   !> The rest of a phase is divided into a whole number of pieces up to FEW, beyond into a power of the FEW-th root of
+   !> 2. A piece may be STRETCHED times as long as error control proposes, whose margin is a tenth [-].
+   real(wp), parameter :: FEW = 7.0_wp, STRETCHED = 1.06_wp
    !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. It is
    !> longer, in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine: what the fading parts of
    !> the rates leave is of the angle's third power [-].
@@ -55,6 +58,7 @@ contains
       it%trial%transient%sought = .false.
       it%trial%transient%known = .false.
       it%trial%openings = 0
+      it%trial%drifts = .false.
       step = first_step(par, it)
    end subroutine begin_phase
 
@@ -80,8 +84,8 @@ contains
          end if
          step%h = max(step%h, par%h_min)
          call choose_order(par, rest, step%h, merge(0.0_wp, par%second_share, step%turns), it%inc, it%trial)
-         h = step%h
-         if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
+         h = rest
+         if (step%h < rest) h = max(rest/number_of_pieces(rest/step%h), par%h_min)
          if (it%trial%relaxation%speed > 0.0_wp) then
             it%trial%transient%known = .false.
          else if (it%trial%mode == MODE_ORDINARY) then
@@ -114,6 +118,19 @@ contains
          step%planned = step%h*it%size
       end do
    end subroutine try_substep
+
+   !> Number of pieces of the rest of a phase for the number n that error control proposes [-]. It is one of few, so
+   !> that a small change of the increment does not change the sizes of its substeps, as shares of the rest: the
+   !> consistent tangent freezes these. docs/theory/integration.md section 3.
+   pure real(wp) function number_of_pieces(n) result(pieces)
+      real(wp), intent(in) :: n
+
+      if (n <= FEW) then
+         pieces = real(ceiling(n/STRETCHED), wp)
+      else
+         pieces = 2.0_wp**(real(nint(FEW*log(n)/log(2.0_wp)), wp)/FEW)
+      end if
+   end function number_of_pieces
 
    !> Ends a substep h at the first event in it, and takes it over. MUD_NO_DIRECTION in it%status: the second without a
    !> direction in a phase; the state is then that of its start. docs/theory/integration.md sections 2 to 4.

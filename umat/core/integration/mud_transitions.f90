@@ -9,6 +9,7 @@ module mud_transitions
    use mud_event, only: elastic_rate, psi_at, EVENT_NONE, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS
    use mud_event_bounds, only: LARGEST_EXCESS
    use mud_event_closes, only: closing_mode, closes
+   use mud_event_forwards, only: backwards
    use mud_event_table, only: event_happened
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
@@ -19,9 +20,9 @@ module mud_transitions
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
    use mud_return_point, only: watched_process, beyond_target, resume_process
-   use mud_reversal, only: new_memory, begin_process, accept_process
+   use mud_reversal, only: new_memory, begin_process, accept_process, drag_process, drags_memory
    use mud_state, only: memory_t
-   use mud_tensor, only: ddot
+   use mud_tensor, only: ddot, norm
    use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
@@ -35,6 +36,7 @@ contains
       type(params_t), intent(in) :: par
       type(integration_t), intent(inout) :: it
       real(wp) :: p, r(6), outwards
+      logical :: dragged
 
       it%trial%time = it%reached
       it%trial%y0(1:6) = it%state%sigma
@@ -47,6 +49,8 @@ contains
       it%n_jumps = 0
       it%trial%watched = 0
       it%trial%advanced = .false.
+      dragged = it%trial%drifts
+      it%trial%drifts = .false.
       call stress_ratio(par, it%state%sigma, p, r)
       it%trial%mode = MODE_ORDINARY
       call take_memory(par, it)
@@ -68,6 +72,7 @@ contains
       if (it%trial%mode == MODE_ORDINARY) then
          if (it%known) then
             it%trial%w(1) = it%trial%w(it%inc%scheme%stages)
+            if (dragged) call rate_at_beginning(par, it)
          else
             call first_rate(par, it)
          end if
@@ -78,6 +83,9 @@ contains
 
       if (par%remembers) call try_to_unload(par, it)
       if (may_open(par, it%state%sigma, it%trial%w(1)%d_p)) call try_to_close(par, r, it)
+      if (it%trial%mode == MODE_ORDINARY .and. it%trial%w(1)%loading .and. .not. it%trial%advanced) then
+         if (drags_memory(par)) it%trial%drifts = backwards(it%trial%w(1)) > 0.0_wp
+      end if
       if (it%jump /= JUMP_NONE .or. it%trial%mode /= MODE_ORDINARY) then
          it%trial%transient%sought = .false.
          it%trial%transient%known = .false.
@@ -162,24 +170,35 @@ contains
       call begin_process(par, r, it%trial%w(1)%n, t, it%state%memory)
       call note_jump(JUMP_REVERSAL, before, it)
       call take_memory(par, it)
-      if (stays_floored(it%trial%w(1), it%trial%r_in) .and. .not. past_counts(par)) then
-         it%trial%w(1)%r_moved = 0.0_wp
-         it%trial%w(1)%x = 0.0_wp
-      else
-         call first_rate(par, it)
-      end if
+      call rate_at_beginning(par, it)
       if (par%memory_rule == RULE_RETURN_POINT) then
          call try_to_return(par, .false., r, t, it)
       end if
    end subroutine apply_memory_rule
 
+   !> The rate where a process begins that the trial has taken over, from that of the memory before, which it holds.
+   pure subroutine rate_at_beginning(par, it)
+      type(params_t), intent(in) :: par
+      type(integration_t), intent(inout) :: it
+
+      if (stays_floored(par, it%trial%w(1), it%trial%r_in) .and. .not. past_counts(par)) then
+         it%trial%w(1)%r_moved = 0.0_wp
+         it%trial%w(1)%x = 0.0_wp
+      else
+         call first_rate(par, it)
+      end if
+   end subroutine rate_at_beginning
+
    !> True where a rate is also that of a process which begins where it stands: with r_in = r the floor acts in every
-   !> direction, as it did in this one, and without a cap the equation of the floor has one root.
-   pure logical function stays_floored(w, r_in)
+   !> direction, as it did in this one. So it did in all if r has moved by less than the floor; otherwise the equation
+   !> of the floor has one root where no cap acts.
+   pure logical function stays_floored(par, w, r_in)
+      type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: r_in(6)
 
-      stays_floored = w%floored .and. .not. (w%capped_d .or. w%capped_h) .and. all(abs(r_in - w%r) <= 0.0_wp)
+      stays_floored = w%floored .and. all(abs(r_in - w%r) <= 0.0_wp)
+      if (stays_floored .and. (w%capped_d .or. w%capped_h)) stays_floored = norm(w%r_moved) < par%x_floor
    end function stays_floored
 
    !> Lets interrupted processes go on whose targets r has reached, and leaves the one to watch in the trial.
@@ -244,6 +263,7 @@ contains
       type(params_t), intent(in) :: par
       type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: h             !< size of the substep [-]
+      real(wp) :: p, r(6)
 
       it%counters%substep = it%counters%substep + 1
       it%state%sigma = it%trial%y(1:6)
@@ -258,7 +278,10 @@ contains
       if (it%inc%rests) it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
       it%state%sigma = landed(par, it%state%sigma)
       call event_happened(it%event, it%trial, it%state)
-      if (it%trial%mode == MODE_ORDINARY) then
+      if (it%trial%drifts) then
+         call stress_ratio(par, it%state%sigma, p, r)
+         call drag_process(r, it%trial%y(Y_SHEAR), it%state%memory)
+      else if (it%trial%mode == MODE_ORDINARY) then
          associate (w => it%trial%w(latest_forwards(it)))
             call accept_process(w%loading, w%x, it%trial%y(Y_SHEAR), it%state%memory)
          end associate

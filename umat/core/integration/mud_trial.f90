@@ -37,8 +37,8 @@ module mud_trial
       real(wp) :: time              !< Pseudo-time of y0 [-].
       logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
       integer :: openings           !< Number of times that p' has fallen to p_min in this increment or phase.
-      integer :: starts             !< Number of times that a process that drifted back has gone forwards in this
-                                    !< increment.
+      logical :: drifts             !< The present process has not gone forwards yet, drifts backwards, and takes its
+                                    !< beginning along.
       type(relaxation_t) :: relaxation   !< Stiff direction of the rates, of speed 0 where the substep is explicit.
       type(transient_t) :: transient     !< Parts of the rates that fade; those in w are without them.
       real(wp) :: parts             !< Void ratio at which the grains of a held point part [-].

@@ -13,8 +13,8 @@ module mud_options
    use mud_vector, only: NY, Y_OPTIONS, Y_SHEAR
    implicit none (type, external)
    private
-   public :: of_options_t, has_numbers, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, look_at_numbers, &
-             rates_of_numbers, add_volume_rates, move_numbers
+   public :: of_options_t, has_numbers, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, &
+             look_at_numbers, rates_of_numbers, add_volume_rates, move_numbers
    public :: bend_t, bend_of, bend, bend_of_hardening, changes_of_bend
    public :: past_counts, take_past, forget_past, new_past, begin_past, interrupt_past, resume_past
    public :: past_changes_t, no_past_changes, begin_past_changes, keep_past_changes, jump_of_past

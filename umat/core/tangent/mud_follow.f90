@@ -2,8 +2,8 @@
 !> The derivatives of the consistent tangent follow an update: they read what it left of a phase, a turn of suction, a
 !> substep, and nothing of theirs goes back; docs/theory/integration.md section 5.3.
 module mud_follow
-   use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_at_memory, changes_of_parting, &
-      jump_of_memory
+   use mud_consistent, only: sensitivity_t, propagate, changes_at_memory, changes_of_parting, &
+      changes_of_ratio, jump_of_memory
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
    use mud_event_table, only: EVENTS
@@ -14,6 +14,7 @@ module mud_follow
    use mud_options, only: keep_past_changes
    use mud_params, only: params_t
    use mud_phases, only: cut_t, CUT_TURN, CUT_NO_SUCTION, CUT_EXIT, CUT_KINK
+   use mud_tensor, only: tensors_t, ANY_TENSORS
    implicit none (type, external)
    private
    public :: follow_phase, follow_turn, follow_substep
@@ -26,7 +27,7 @@ contains
       type(sensitivity_t), intent(inout) :: sens
 
       sens%driving%scans = inc%suction%scanning%moves
-      call begin_stretch(inc, change_of_cut(par, inc, cut, sens), sens)
+      sens%end_shift = change_of_cut(par, inc, cut, sens)
    end subroutine follow_phase
 
    !> Suction has turned: ln x of the turn goes with suction step and volume [1/kPa, -]. docs/theory/material.md section
@@ -81,6 +82,7 @@ contains
          if (EVENTS(it%event)%moves .and. it%reached < it%inc%to) &
             call move_event(par, it%inc, it%event, trial, h, sens)
          if (trial%mode /= MODE_HELD) call keep_past_changes(par, trial%y0, trial%y, trial%past, sens%y, sens%past)
+         if (trial%drifts) sens%r_in = tensors_t(changes_of_ratio(par, it%state%sigma, sens%y), ANY_TENSORS)
       end associate
       if (par%remembers .and. it%state%margin >= 0.0_wp) &
          call changes_at_memory(par, it%inc, it%reached, it%state%sigma, sens)
