@@ -15,7 +15,7 @@ def rows(text):
 
 def listed(text):
     """Names in the list of the table, without the first, which is no event."""
-    return re.search(r"EVENTS\(EVENT_NONE:EVENT_TURN\) = \[[&\s]*NO_EVENT, ([^\]]*)\]", text)[1].split(", ")
+    return re.findall(r"\w+", re.search(r"EVENTS\(EVENT_NONE:EVENT_TURN\) = \[[&\s]*NO_EVENT, ([^\]]*)\]", text)[1])
 
 
 def test_every_event_is_a_file_with_a_row_in_the_table():

@@ -13,7 +13,7 @@ BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/tangent/mud_event_ti
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
 EVENT_BOUNDS, EVENT_CLOSES = "core/integration/mud_event_bounds.f90", "core/integration/mud_event_closes.f90"
 EVENT_FORWARDS, EVENT_REVERSAL = "core/integration/mud_event_forwards.f90", "core/integration/mud_event_reversal.f90"
-EVENT_MECHANISM = "core/integration/mud_event_mechanism.f90"
+EVENT_MECHANISM, EVENT_DILATES = "core/integration/mud_event_mechanism.f90", "core/integration/mud_event_dilates.f90"
 ISOTROPIC_MEMORY = "core/integration/mud_isotropic_memory.f90"
 PRELOADING = "core/options/mud_preloading.f90"
 FLUIDITY, OPTIONS = "core/options/mud_fluidity.f90", "core/options/mud_options.f90"
@@ -234,6 +234,8 @@ MUTATIONS = [
     ("shear that turns just below the isotropic memory is noise",
      (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
     ("the place where a drift ends is not located", (EVENT_FORWARDS, "may = trial%drifts", "may = .false.")),
+    ("the kink of preloading at D = 0 is not located",
+     (EVENT_DILATES, "may = trial%w(1)%own%bends .and.", "may = .false. .and.")),
     ("a drift leaves its beginning where it was", (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%eps")),
     ("sizes of substeps follow the increment",
      (SUBSTEPPING, "max(rest/number_of_pieces(rest/step%h), par%h_min)", "step%h + 0*number_of_pieces(rest)")),

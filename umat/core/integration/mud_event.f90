@@ -16,10 +16,11 @@ module mud_event
    implicit none (type, external)
    private
    public :: event_t, event_changes_t, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND, NOBODY, ORDINARY, &
-             ELASTIC, HELD, EXACT, EXACT_TRIALS, NEARLY, FEW_TRIALS, last_rate, elastic_rate, psi_at
+             ELASTIC, HELD, EXACT, EXACT_TRIALS, NEARLY, FEW_TRIALS, SHARP_KINK, last_rate, switches, elastic_rate, &
+             psi_at
    public :: NOTHING, BY_STATE, BY_RATE, BY_DRIVE, BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MARGIN
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
-             EVENT_TURN, EVENT_PARTS, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS
+             EVENT_TURN, EVENT_PARTS, EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS
 
    ! in the order in which they are looked for
    integer, parameter :: EVENT_NONE = 0
@@ -28,12 +29,13 @@ module mud_event
    integer, parameter :: EVENT_CLOSES = 3     !< p' would rise from p_min.
    integer, parameter :: EVENT_BOUNDS = 4     !< r exceeds the bounding surface inside the elastic domain.
    integer, parameter :: EVENT_MECHANISM = 5  !< The isotropic mechanism begins or ends to act while suction changes.
-   integer, parameter :: EVENT_YIELD = 6      !< Compression reaches what the isotropic mechanism remembers.
-   integer, parameter :: EVENT_UNLOAD = 7     !< Compression ceases; the isotropic mechanism remembers how far it came.
-   integer, parameter :: EVENT_REVERSAL = 8   !< (r - r_in):n falls to -x_rev.
-   integer, parameter :: EVENT_RETURN = 9     !< r reaches the target of an interrupted process.
-   integer, parameter :: EVENT_FORWARDS = 10  !< A process that drifts back from its beginning goes forwards.
-   integer, parameter :: EVENT_TURN = 11      !< A process ceases to go forwards; its substep goes on.
+   integer, parameter :: EVENT_DILATES = 6    !< Contraction turns to dilation or back, where that is a kink.
+   integer, parameter :: EVENT_YIELD = 7      !< Compression reaches what the isotropic mechanism remembers.
+   integer, parameter :: EVENT_UNLOAD = 8     !< Compression ceases; the isotropic mechanism remembers how far it came.
+   integer, parameter :: EVENT_REVERSAL = 9   !< (r - r_in):n falls to -x_rev.
+   integer, parameter :: EVENT_RETURN = 10    !< r reaches the target of an interrupted process.
+   integer, parameter :: EVENT_FORWARDS = 11  !< A process that drifts back from its beginning goes forwards.
+   integer, parameter :: EVENT_TURN = 12      !< A process ceases to go forwards; its substep goes on.
 
    integer, parameter :: NO_RATE = 0          !< The function looks at the state alone.
    integer, parameter :: RATE_THERE = 1       !< The function looks at the rate there.
@@ -60,6 +62,11 @@ module mud_event
    integer, parameter :: BY_SURFACE = 5       !< State parameter, and excess over the bounding surface.
    integer, parameter :: BY_MECHANISM = 6     !< The drive of the isotropic mechanism.
    integer, parameter :: BY_MARGIN = 7        !< The margin of the isotropic memory.
+
+   !> A kink is looked for where the error of a substep is above this share of the tolerance [-].
+   real(wp), parameter :: SHARP_KINK = 0.01_wp
+   !> A number that switches and is this much smaller than at the end of a substep is where it switched before [-].
+   real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
 
    type :: event_t
       logical :: concerns(MODE_ORDINARY:MODE_HELD)   !< Substeps that are ordinary, elastic, held.
@@ -96,6 +103,13 @@ contains
          call rate_of(par, inc, trial%time + h, trial%y, trial%r_in, trial%mode, w, counters)
       end if
    end subroutine last_rate
+
+   !> True where a number changes its sign in a substep that does not begin there.
+   pure logical function switches(first, last)
+      real(wp), intent(in) :: first, last
+
+      switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)
+   end function switches
 
    !> p' times the rate of the stress ratio if the whole strain were elastic. The part of the strain across the elastic
    !> domain turns the direction of loading, not the process: the whole strain tells where it goes. r [-].

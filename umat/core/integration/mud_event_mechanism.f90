@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Event: the isotropic mechanism begins or ends to act while suction changes; docs/theory/material.md section 4.4.
 module mud_event_mechanism
-   use mud_event, only: event_t, event_changes_t, RATE_THERE, BEFORE, BY_MECHANISM, ORDINARY, EXACT, EXACT_TRIALS
+   use mud_event, only: event_t, event_changes_t, RATE_THERE, BEFORE, BY_MECHANISM, ORDINARY, EXACT, EXACT_TRIALS, &
+      SHARP_KINK, switches
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
@@ -14,11 +15,6 @@ module mud_event_mechanism
 
    type(event_t), parameter :: MECHANISM = &
       event_t(ORDINARY, RATE_THERE, BEFORE, .true., BY_MECHANISM, EXACT, EXACT_TRIALS)
-
-   !> A kink is looked for where the error of a substep is above this share of the tolerance [-].
-   real(wp), parameter :: SHARP_KINK = 0.01_wp
-   !> A drive of the isotropic mechanism this much smaller than at the end of a substep is where it switched before [-].
-   real(wp), parameter :: AT_SWITCH = 1.0e-6_wp
 contains
    !> True of a substep with an error that a kink may have made, and a kink [-].
    pure logical function mechanism_may_switch(par, inc, trial, error)
@@ -39,10 +35,8 @@ contains
       type(trial_t), intent(in) :: trial
 
       mechanism_switches = inc%suction%bonds .and. abs(inc%d_pc) > 0.0_wp
-      if (.not. mechanism_switches) return
-      associate (first => trial%w(1)%iso_drive, last => trial%w(inc%scheme%stages)%iso_drive)
-         mechanism_switches = first*last < 0.0_wp .and. abs(first) > AT_SWITCH*abs(last)
-      end associate
+      if (mechanism_switches) &
+         mechanism_switches = switches(trial%w(1)%iso_drive, trial%w(inc%scheme%stages)%iso_drive)
    end function mechanism_switches
 
    !> Drive of the mechanism over that at the start [-].

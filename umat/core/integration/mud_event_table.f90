@@ -5,9 +5,11 @@ module mud_event_table
    use mud_cutoff, only: is_below
    use mud_event, only: event_t, event_changes_t, NO_RATE, RATE_THERE, RATE_IF_CLOSED, AT, NOBODY, NOTHING, EXACT, &
       EXACT_TRIALS, last_rate, psi_at, EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, &
-      EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN, EVENT_PARTS, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS
+      EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN, EVENT_PARTS, EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, &
+      EVENT_FORWARDS
    use mud_event_bounds, only: BOUNDS, bounds_function, slopes_of_bounds, bounded
    use mud_event_closes, only: CLOSES_AT, may_close, rate_without_past, closing_function, slopes_of_closing
+   use mud_event_dilates, only: DILATES, may_dilate, dilation_function, slopes_of_dilation
    use mud_event_forwards, only: FORWARDS, may_go_forwards, backwards, slopes_of_forwards
    use mud_event_mechanism, only: MECHANISM, mechanism_may_switch, mechanism_function, slopes_of_mechanism
    use mud_event_opens, only: OPENS, height, slopes_of_opening, opened
@@ -35,7 +37,8 @@ module mud_event_table
    type(event_t), parameter :: NO_EVENT = event_t(NOBODY, NO_RATE, AT, .false., NOTHING, EXACT, EXACT_TRIALS)
    !> In the order of EVENT_*.
    type(event_t), parameter :: EVENTS(EVENT_NONE:EVENT_TURN) = [ &
-      NO_EVENT, OPENS, PARTS, CLOSES_AT, BOUNDS, MECHANISM, YIELD, UNLOAD, REVERSAL, RETURNS, FORWARDS, TURN]
+      NO_EVENT, OPENS, PARTS, CLOSES_AT, BOUNDS, MECHANISM, DILATES, YIELD, UNLOAD, REVERSAL, RETURNS, FORWARDS, &
+      TURN]
 contains
    !> Whether an event is possible in a substep h, for what its function costs; h is a share of inc [-], and error that
    !> of the substep. Where a reversal or a parting is not at the end h is shortened. docs/theory/integration.md
@@ -60,6 +63,8 @@ contains
          possible = may_close(inc, trial, h)
       case (EVENT_MECHANISM)
          possible = mechanism_may_switch(par, inc, trial, error)
+      case (EVENT_DILATES)
+         possible = may_dilate(par, inc, trial, error)
       case (EVENT_YIELD)
          possible = may_yield(par, inc, trial, h)
       case (EVENT_UNLOAD)
@@ -134,6 +139,8 @@ contains
          f = drive_of_margin(par, inc, time, w)
       case (EVENT_MECHANISM)
          f = mechanism_function(trial, w)
+      case (EVENT_DILATES)
+         f = dilation_function(trial, w)
       case (EVENT_TURN)
          f = projection_on_chord(par, place_of(par, inc, trial, w, y))
       case (EVENT_RETURN)
@@ -166,6 +173,8 @@ contains
          slopes = slopes_of_bounds(c)
       case (EVENT_MECHANISM)
          slopes = slopes_of_mechanism(c)
+      case (EVENT_DILATES)
+         slopes = slopes_of_dilation(w, c)
       case (EVENT_YIELD)
          slopes = slopes_of_yield(c)
       case (EVENT_REVERSAL)

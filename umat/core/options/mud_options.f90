@@ -18,7 +18,7 @@ module mud_options
    public :: bend_t, bend_of, bend, bend_of_hardening, changes_of_bend
    public :: past_counts, take_past, forget_past, new_past, begin_past, interrupt_past, resume_past
    public :: past_changes_t, no_past_changes, begin_past_changes, keep_past_changes, jump_of_past
-   public :: softens, changes_of_softening, changes_of_numbers, add_volume_changes, changes_of_moved
+   public :: softens, changes_of_softening, changes_of_flow, changes_of_numbers, add_volume_changes, changes_of_moved
 
    !> Effects of the options on a rate; what is off is not set.
    type :: of_options_t
@@ -287,6 +287,15 @@ contains
       end if
       if (par%fluid) rates(:, Y_FLUIDITY) = growth_changes(par, own%fluidity, l, dl, dp, y)
    end subroutine changes_of_numbers
+
+   !> Changes of L D times a number, from those of the rates, where contraction or dilation is a rate of an option.
+   pure function changes_of_flow(d, rates) result(changes)
+      real(wp), intent(in) :: d, rates(LANES, NY)
+      real(wp) :: changes(LANES)
+
+      changes = rates(:, Y_CONTRACTION)
+      if (d < 0.0_wp) changes = rates(:, Y_LOG_CHI)
+   end function changes_of_flow
 
    !> Adds the rates by a change of volume d_v, without shear [-]. docs/theory/material.md section 4.11.
    pure subroutine add_volume_rates(par, d_v, y, rates)
