@@ -238,7 +238,7 @@ MUTATIONS = [
      (EVENT_DILATES, "may = trial%w(1)%own%bends .and.", "may = .false. .and.")),
     ("a drift leaves its beginning where it was", (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%eps")),
     ("sizes of substeps follow the increment",
-     (SUBSTEPPING, "max(rest/number_of_pieces(rest/step%h), par%h_min)", "step%h + 0*number_of_pieces(rest)")),
+     (SUBSTEPPING, "max(rest/number_of_pieces(rest/h), par%h_min)", "h + 0*number_of_pieces(rest)")),
     ("shear inside the elastic domain with the modulus at the stress",
      (INCREMENT, "g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)", "g = 2.0_wp*w%g")),
     ("no change of the modulus at the centre with the void ratio",

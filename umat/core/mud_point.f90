@@ -107,6 +107,7 @@ contains
          if (par%cutoff) state%sigma = lifted(par, it%inc%suction, state%sigma, state%e, state%p_c)
       end associate
       it%size = extent_of(par, it%inc, it%state)
+      it%trial%divides = .false.
    end subroutine begin_update
 
    !> The state at the end of the increment, and the slopes of its S_w.

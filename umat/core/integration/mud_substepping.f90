@@ -39,7 +39,7 @@ module mud_substepping
    real(wp), parameter :: SHARP = 1.0e-3_wp
    !> The rest of a phase is divided into a whole number of pieces up to FEW, beyond into a power of the FEW-th root of
    !> 2. A piece may be STRETCHED times as long as error control proposes, whose margin is a tenth [-].
-   real(wp), parameter :: FEW = 7.0_wp, STRETCHED = 1.06_wp
+   real(wp), parameter :: FEW = 6.0_wp, STRETCHED = 1.06_wp
    !> First substep where the domain turns sharply, share of its radius: a divisor of few round increments. It is
    !> longer, in inverse proportion to the angle, below NARROW, the root of 1 minus its cosine: what the fading parts of
    !> the rates leave is of the angle's third power [-].
@@ -84,8 +84,9 @@ contains
          end if
          step%h = max(step%h, par%h_min)
          call choose_order(par, rest, step%h, merge(0.0_wp, par%second_share, step%turns), it%inc, it%trial)
-         h = rest
-         if (step%h < rest) h = max(rest/number_of_pieces(rest/step%h), par%h_min)
+         h = step%h
+         if (it%trial%divides .and. h < rest) h = max(rest/number_of_pieces(rest/h), par%h_min)
+         if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
          if (it%trial%relaxation%speed > 0.0_wp) then
             it%trial%transient%known = .false.
          else if (it%trial%mode == MODE_ORDINARY) then
@@ -121,7 +122,8 @@ contains
 
    !> Number of pieces of the rest of a phase for the number n that error control proposes [-]. It is one of few, so
    !> that a small change of the increment does not change the sizes of its substeps, as shares of the rest: the
-   !> consistent tangent freezes these. docs/theory/integration.md section 3.
+   !> consistent tangent freezes these, and where errors grow from substep to substep that would show.
+   !> docs/theory/integration.md section 3.
    pure real(wp) function number_of_pieces(n) result(pieces)
       real(wp), intent(in) :: n
 

@@ -86,6 +86,7 @@ contains
       if (it%trial%mode == MODE_ORDINARY .and. it%trial%w(1)%loading .and. .not. it%trial%advanced) then
          if (drags_memory(par)) it%trial%drifts = backwards(it%trial%w(1)) > 0.0_wp
       end if
+      it%trial%divides = it%trial%divides .or. it%trial%drifts .or. it%jump == JUMP_NEW
       if (it%jump /= JUMP_NONE .or. it%trial%mode /= MODE_ORDINARY) then
          it%trial%transient%sought = .false.
          it%trial%transient%known = .false.

@@ -37,6 +37,8 @@ module mud_trial
       real(wp) :: time              !< Pseudo-time of y0 [-].
       logical :: advanced           !< The present process has had (r - r_in):n > 0: a reversal would end it.
       integer :: openings           !< Number of times that p' has fallen to p_min in this increment or phase.
+      logical :: divides            !< A point was released or a process has drifted in this increment: the sizes of its
+                                    !< substeps divide the rest.
       logical :: drifts             !< The present process has not gone forwards yet, drifts backwards, and takes its
                                     !< beginning along.
       type(relaxation_t) :: relaxation   !< Stiff direction of the rates, of speed 0 where the substep is explicit.

@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Consistent tangent: the derivative of the algorithm, carried through the accepted substeps. The jumps of memory, the
 !> share of an increment inside the elastic domain and the times of events (mud_event_time) are differentiated. Sizes
-!> of substeps are frozen, as shares of the rest of their phase, but for those that end at an event: behind it all
-!> substeps begin later by its shift, and shrink with the rest. In the limit of small substeps that is the saltation
-!> term (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
+!> of substeps are frozen but for those that end at an event, for the last, which ends where the increment ends, and for
+!> those that divide the rest: behind an event all substeps begin later by its shift. In the limit of small substeps
+!> that is the saltation term (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
 module mud_consistent
    use mud_integration, only: JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_kinds, only: wp
@@ -35,7 +35,7 @@ module mud_consistent
    use mud_vector, only: NY, Y_SHEAR
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, &
+   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, &
              changes_of_parting, change_with_size, changes_at_memory, changes_along, changes_of_ratio, &
              linearise_stage
 
@@ -48,6 +48,7 @@ module mud_consistent
       real(wp) :: r_before(DIRECTIONS, 6)    !< derivatives of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< derivatives of the pseudo-time where the next substep begins
       real(wp) :: end_shift(DIRECTIONS)      !< derivatives of the pseudo-time where the phase ends
+      real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
       !> Derivatives of the memories of interrupted processes; those up to number `settled` were there when the
       !> increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
@@ -80,6 +81,16 @@ contains
       call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
 
+   !> A phase begins whose end has a pseudo-time that changes by end_shift [-]. Its substeps stretch with it.
+   pure subroutine begin_stretch(inc, end_shift, sens)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: end_shift(DIRECTIONS)
+      type(sensitivity_t), intent(inout) :: sens
+
+      sens%end_shift = end_shift
+      sens%stretch = (end_shift - sens%shift)/(inc%to - inc%from)
+   end subroutine begin_stretch
+
    !> Carries the derivatives through an accepted substep h, a share of inc [-], the last one of a phase or not.
    !> docs/theory/integration.md section 5.3.
    pure subroutine propagate(par, inc, trial, h, last, sens)
@@ -92,7 +103,11 @@ contains
       real(wp) :: dh(DIRECTIONS), rates(DIRECTIONS, NY, MAX_STAGES)
 
       call begin_past_changes(sens%y, sens%past)
-      dh = (h/(inc%to - trial%time))*(sens%end_shift - sens%shift)
+      if (trial%divides .or. last) then
+         dh = (h/(inc%to - trial%time))*(sens%end_shift - sens%shift)
+      else
+         dh = h*sens%stretch
+      end if
       if (trial%mode == MODE_HELD) then
          call changes_through_hold(par, inc, trial%parts, sens%parts, trial%y0(1:6), trial%time, h, sens%shift, dh, &
                                    sens%driving, sens%y)
