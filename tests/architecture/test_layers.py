@@ -10,7 +10,8 @@ from test_architecture import code_lines, root, shown, sources, uses
 HOST = ("host/base", "host/time", "host/mesh", "host/element", "host/solver", "host/contact", "host/scene",
         "host/model", "host/terms", "host/setup", "host/run", "host/output", "host")
 GROUPS = {
-    "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/rates", "umat/core/integration"), ()),
+    "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/options", "umat/core/rates", "umat/core/integration",
+                   "umat/core/tangent", "umat/core"), ()),
     "umat/abi": (("umat/abi",), ("umat/core",)),
     "umat/tables": (("umat/tables",), ("umat/core",)),
     "umat/include": (("umat/include",), ()),
@@ -120,6 +121,18 @@ def misplaced(suites, folders):
 AS_WRITTEN = {"scene_types", "namelists", "key_table", "key_schema"}   # What a run does not know.
 
 
+TANGENT, USERS = "umat/core/tangent", {"mud_point"}   # The loops of an update; beside them whoever passes blocks on.
+BLOCKS = {"mud_blocks": {"mud_kernel"}}
+
+
+def tangents_met(files):
+    """Uses of the tangent folder by others than the loops of an update, and blocks by others than the kernel: the value
+    path is read without a tangent."""
+    return [f"{folder}/{stem}: uses {module} of {TANGENT}" for stem, (folder, _) in files.items()
+            for module in used(files, stem) if files[module][0] == TANGENT and folder != TANGENT
+            and stem not in USERS | BLOCKS.get(module, set())]
+
+
 def seen_by(files, start):
     """Of AS_WRITTEN what a chain of uses from a module leads to."""
     seen, left = set(), [start]
@@ -163,6 +176,10 @@ def planted():
         ("LAPACK elsewhere", foreign, [("node", "host/mesh", "call dgesv(n)")], [("dense", "common", "call dgesv(n)")]),
         ("UMFPACK elsewhere", foreign, [("node", "host/mesh", "call umfpack_di_solve(n)")],
          [("node", "host/mesh", "call solve(n) ! umfpack_di_solve")]),
+        ("a tangent on the value path", tangents_met,
+         [("mud_trial", "umat/core/integration", "use mud_turn, only: x"), ("mud_turn", TANGENT, "")],
+         [("mud_point", "umat/core", "use mud_turn, only: x"), ("mud_turn", TANGENT, "use mud_held, only: x"),
+          ("mud_held", TANGENT, "use mud_trial, only: x"), ("mud_trial", "umat/core/integration", "")]),
         ("a module from nowhere", strange_use, [("node", "host/mesh", "use somewhere, only: x")],
          [("node", "host/mesh", "use, intrinsic :: iso_fortran_env, only: x")])]
     mirror = [] if (misplaced(["tests/unit/test_a.pf"], {"host/mesh"})
@@ -188,6 +205,7 @@ def test_folders_use_what_their_layer_may():
         ("there are sources of every group to look at", sorted(set(GROUPS) - have)),
         ("every module uses only what its layer may see", wrong_layers(files)),
         ("no folders use each other in a circle", cycles(files)),
+        ("the value path meets no tangent", tangents_met(files)),
         ("no module hands on a name of another", handed_on(files)),
         ("HDF5, LAPACK and UMFPACK live in one file each", foreign(files)),
         ("every module that is used is there", strange_use(files)),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mutations: (title, (file below umat, text that stands there once, its replacement), ...)."""
 
-TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/integration/mud_point.f90"
+TENSOR, RATES, POINT = "core/base/mud_tensor.f90", "core/rates/mud_rates.f90", "core/mud_point.f90"
 DIRECTION, EQUATION = "core/rates/mud_direction.f90", "core/rates/mud_direction_equation.f90"
 INCREMENT, REVERSAL = "core/integration/mud_increment.f90", "core/integration/mud_reversal.f90"
 TRANSIENT, INSIDE_DOMAIN = "core/integration/mud_transient.f90", "core/integration/mud_inside_domain.f90"
@@ -9,19 +9,22 @@ SUBSTEP, TRIAL = "core/integration/mud_substep.f90", "core/integration/mud_trial
 RETURN_POINT, EVENTS = "core/integration/mud_return_point.f90", "core/integration/mud_events.f90"
 TRANSITIONS, PHASES = "core/integration/mud_transitions.f90", "core/integration/mud_phases.f90"
 SUBSTEPPING = "core/integration/mud_substepping.f90"
-BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/integration/mud_event_time.f90"
+BOUNDING, EVENT_TIME = "core/rates/mud_bounding.f90", "core/tangent/mud_event_time.f90"
 CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landing.f90"
-EVENT_FUNCTIONS = "core/integration/mud_event_functions.f90"
-EVENT_TABLE = "core/integration/mud_event_table.f90"
+EVENT_BOUNDS, EVENT_CLOSES = "core/integration/mud_event_bounds.f90", "core/integration/mud_event_closes.f90"
+EVENT_FORWARDS, EVENT_REVERSAL = "core/integration/mud_event_forwards.f90", "core/integration/mud_event_reversal.f90"
+EVENT_MECHANISM, EVENT_DILATES = "core/integration/mud_event_mechanism.f90", "core/integration/mud_event_dilates.f90"
 ISOTROPIC_MEMORY = "core/integration/mud_isotropic_memory.f90"
-PRELOADING = "core/laws/mud_preloading.f90"
-FLUIDITY = "core/laws/mud_fluidity.f90"
+PRELOADING = "core/options/mud_preloading.f90"
+FLUIDITY, OPTIONS = "core/options/mud_fluidity.f90", "core/options/mud_options.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
 RETENTION, BONDING, ELASTIC = "core/laws/mud_retention.f90", "core/laws/mud_bonding.f90", "core/laws/mud_elastic.f90"
 PARAMS, REGISTRY, STATE = "core/laws/mud_params.f90", "core/base/mud_registry.f90", "core/laws/mud_state.f90"
-CONSISTENT = "core/integration/mud_consistent.f90"
+CONSISTENT, HELD = "core/tangent/mud_consistent.f90", "core/tangent/mud_held.f90"
+FOLLOW, FADING = "core/tangent/mud_follow.f90", "core/tangent/mud_fading.f90"
+LOADING_CHANGES, INSIDE_CHANGES = "core/tangent/mud_loading_changes.f90", "core/tangent/mud_inside_changes.f90"
 ORDER, ERROR_CONTROL = "core/integration/mud_order.f90", "core/integration/mud_error_control.f90"
-DRIVING = "core/integration/mud_driving.f90"
+DRIVING = "core/tangent/mud_driving.f90"
 MARGIN = "core/laws/mud_margin.f90"
 SCANNING, BRANCHES = "core/laws/mud_scanning.f90", "core/integration/mud_branches.f90"
 
@@ -93,10 +96,10 @@ MUTATIONS = [
     ("the coupling blocks do not know the turn",
      (BRANCHES, "with_turn = change(1)*course%with_increment", "with_turn = 0.0_wp*change(1)")),
     ("the stress does not know that a turn moves the scanning branch",
-     (BRANCHES, "it%sens%driving%scans = it%inc%suction%scanning%moves", "it%sens%driving%scans = .false.")),
+     (FOLLOW, "sens%driving%scans = inc%suction%scanning%moves", "sens%driving%scans = .false.")),
     ("the stress does not know when S_w has a kink",
-     (PHASES, "change = change_of_passing(it%inc, cut%time, par%suction%omega, it%sens%driving)",
-      "change = 0.0_wp*change_of_passing(it%inc, cut%time, par%suction%omega, it%sens%driving)")),
+     (FOLLOW, "change = change_of_passing(inc, cut%time, par%suction%omega, sens%driving)",
+      "change = 0.0_wp*change_of_passing(inc, cut%time, par%suction%omega, sens%driving)")),
     ("the curvature of a scanning branch without the change of its weight",
      (RETENTION, "along%bend = bend*weight**2 + at%slope*q*weight*rest", "along%bend = bend*weight**2")),
     ("wetting curves above drying are accepted",
@@ -125,7 +128,7 @@ MUTATIONS = [
     ("no contraction cap", (EQUATION, "par%cap_d*eq%two_g/eq%k_e", "1.0e9_wp*eq%two_g/eq%k_e")),
     ("softening cap twice as large", (EQUATION, "limit = eq%least_h*positive", "limit = 2.0_wp*eq%least_h*positive")),
     ("first root found taken",
-     (DIRECTION, "if (.not. w%several) return", "if (.not. w%several .or. last > 0.0_wp) return")),
+     (DIRECTION, "if (w%several .or. .not. found) call scan", "if (.not. found) call scan")),
     ("no look at the floor before a rising (r - r_in):n",
      (DIRECTION, "single_root = side*there%residual < 0.0_wp", "single_root = there%scale > 0.0_wp")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
@@ -144,26 +147,27 @@ MUTATIONS = [
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
     ("forget to zero the plastic shear at a reversal",
-     (REVERSAL, "memory%chi_own = 0.0_wp\n      memory%eps_q_p = 0.0_wp",
-      "memory%chi_own = 0.0_wp\n      memory%eps_q_p = memory%eps_q_p")),
+     (REVERSAL, "call begin_past(memory)\n      memory%eps_q_p = 0.0_wp",
+      "call begin_past(memory)\n      memory%eps_q_p = memory%eps_q_p")),
     # cyclic preloading
     ("preloading by all contraction", (PRELOADING, "log(chi - chi_own)", "log(chi)")),
     ("preloading to the first power", (PRELOADING, "d = g*g*positive(d)", "d = g*positive(d)")),
     ("preloading dilates less too", (PRELOADING, "d = g*g*positive(d) - positive(-d)", "d = g*g*d + 0.0_wp*positive(d)")),
     ("preloading does not stiffen", (PRELOADING, "h_b = g**(2.0_wp*preloading%s)*h_b", "h_b = h_b + 0.0_wp*g")),
     ("a process keeps the contraction of the one before",
-     (REVERSAL, "memory%chi_own = 0.0_wp\n      memory%eps_q_p", "memory%eps_q_p")),
+     (OPTIONS, "memory%chi_own = 0.0_wp\n   end subroutine begin_past", "memory%chi_own = memory%chi_own\n   end subroutine begin_past")),
     ("a return does not give back contraction",
-     (RETURN_POINT, "memory%chi_own = min(process%chi, memory%chi)", "memory%chi_own = 0.0_wp*process%chi")),
+     (OPTIONS, "memory%chi_own = min(memory%interrupted(k)%chi, memory%chi)",
+      "memory%chi_own = 0.0_wp*memory%interrupted(k)%chi")),
     # fluidity
     ("fluidity has no threshold", (FLUIDITY, "below = max(1.0_wp - p/par%p_ell, 0.0_wp)", "below = 1.0_wp - p/par%p_ell")),
     ("fluidity falls off as the first power of p'", (FLUIDITY, "fluidity%weight = below*below", "fluidity%weight = below")),
     ("fluidity without a largest value", (FLUIDITY, "growth = par%c_ell*fluidity%weight*(1.0_wp - fluidity%ell/par%ell_max)", "growth = par%c_ell*fluidity%weight")),
     ("an increase of volume takes fluidity away", (FLUIDITY, "par%r_ell*max(d_v, 0.0_wp)", "par%r_ell*abs(d_v)")),
-    ("fluidity softens dilatancy alone", (RATES, "w%b_0 = w%fluid%factor*w%b_0", "w%b_0 = w%b_0 + 0.0_wp*w%fluid%factor")),
+    ("fluidity softens dilatancy alone", (OPTIONS, "b_0 = own%fluidity%factor*b_0", "b_0 = b_0 + 0.0_wp*own%fluidity%factor")),
     ("the tangent does not know how fluidity changes", (FLUIDITY, "fluidity%by_ell = -fluidity%factor*fluidity%weight", "fluidity%by_ell = 0.0_wp")),
     ("the tangent does not know the threshold of fluidity", (FLUIDITY, "fluidity%weight_by_p = -2.0_wp*below/par%p_ell", "fluidity%weight_by_p = 0.0_wp")),
-    ("fluidity stays where it was", (TRANSITIONS, "min(max(it%trial%y(Y_FLUIDITY), 0.0_wp), par%ell_max)", "min(max(it%trial%y0(Y_FLUIDITY), 0.0_wp), par%ell_max)")),
+    ("fluidity stays where it was", (OPTIONS, "min(max(y(Y_FLUIDITY), 0.0_wp), par%ell_max)", "min(max(y0(Y_FLUIDITY), 0.0_wp), par%ell_max)")),
     ("threshold weight on the wrong memory", (REVERSAL, "*(memory%r_before - r)", "*(memory%r_in - r)")),
     ("no fall-back of the threshold rule", (REVERSAL, "if (ddot(r - r_in, n) < 0.0_wp) r_in = r", "continue")),
     ("repositioning with the process that ends",
@@ -185,15 +189,15 @@ MUTATIONS = [
      (RETURN_POINT, "min(process%target, target_limit(par, process)*m_b)", "process%target")),
     ("return_point takes the harder memory", (RETURN_POINT, ">= ddot(r - memory%r_in, t))", "< ddot(r - memory%r_in, t))")),
     ("return_point restores no target", (RETURN_POINT, "memory%target = process%target", "memory%target = memory%target")),
-    ("no reversal inside a substep", (EVENTS, "may_reverse = last%loading .and.", "may_reverse = .false. .and.")),
+    ("no reversal inside a substep", (EVENT_REVERSAL, "may_reverse = last%loading .and.", "may_reverse = .false. .and.")),
     ("reversals are looked for wherever x is below zero",
-     (EVENTS, "(last%x < -par%x_rev .or.", "(last%x < 0.0_wp .or.")),
+     (EVENT_REVERSAL, "(last%x < -par%x_rev .or.", "(last%x < 0.0_wp .or.")),
     ("an event's time is frozen", (EVENT_TIME, "dh = -slopes(j)/slopes(BY_SIZE)", "dh = 0.0_wp*slopes(j)")),
     ("substeps behind an event keep their place",
      (EVENT_TIME, "sens%shift(j) = sens%shift(j) + dh", "sens%shift(j) = sens%shift(j) + 0.0_wp*dh")),
-    ("a reversal in a jump is timed like others", (EVENT_TIME, "FOUND = 1.0e-6_wp", "FOUND = 1.0e9_wp")),
+    ("a reversal in a jump is timed like others", (EVENT_REVERSAL, "FOUND = 1.0e-6_wp", "FOUND = 1.0e9_wp")),
     ("a held point does not follow the strain",
-     (CUTOFF, "change = dr0 + deviator(stiffness*d_strain)", "change = dr0 + 0.0_wp*deviator(stiffness*d_strain)")),
+     (HELD, "change = dr0 + deviator(stiffness*d_strain)", "change = dr0 + 0.0_wp*deviator(stiffness*d_strain)")),
     ("hysteresis the other way round", (TRANSITIONS, "%x >= -par%x_rev .and. it%event", "%x >= par%x_rev .and. it%event")),
     ("reversals never found", (TRANSITIONS, "%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL", "%x >= -huge(1.0_wp)")),
     # integration
@@ -214,7 +218,7 @@ MUTATIONS = [
     ("closing remembers the gap", (TRANSITIONS, "it%state%memory = new_memory(r)", "it%state%memory%depth = it%state%memory%depth")),
     ("open stress ratio beyond the bounding surface", (BOUNDING, "if (beyond > 0.0_wp) r_limited", "if (beyond > 1.0e9_wp) r_limited")),
     ("an open point never closes",
-     (CUTOFF, "closing_rate(inc, openings, w) <= 0.0_wp", "closing_rate(inc, openings, w) <= huge(1.0_wp)")),
+     (EVENT_CLOSES, "closing_rate(inc, openings, w) <= 0.0_wp", "closing_rate(inc, openings, w) <= huge(1.0_wp)")),
     ("tension is not reported", (POINT, "if (has_tension(it%state%sigma)) it%counters%tensile = 1", "continue")),
     # elastic domain
     ("the elastic domain forgets the strain inside",
@@ -222,16 +226,18 @@ MUTATIONS = [
     ("strain beside the loading direction is lost",
      (INCREMENT, "aside = inc%d_strain - loading", "aside = 0.0_wp*loading")),
     ("a straight strain without the centre's part in its derivative",
-     (INCREMENT, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
+     (LOADING_CHANGES, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
     ("a switch of the isotropic mechanism that does not move",
-     (EVENT_TABLE, "BEFORE, .true., EXACT, EXACT_TRIALS), &         ! the iso", "BEFORE, .false., EXACT, EXACT_TRIALS), &         ! the iso")),
+     (EVENT_MECHANISM, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
     ("noise at what the isotropic mechanism remembers is a reversal",
      (ISOTROPIC_MEMORY, "turns = inc%rests\n", "turns = .false.\n")),
     ("shear that turns just below the isotropic memory is noise",
      (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
-    ("the place where a drift ends is not located", (EVENTS, "possible = trial%drifts", "possible = .false.")),
-    ("the kink of preloading at D = 0 is not located", (EVENTS, "possible = trial%w(1)%preloaded .and.", "possible = .false. .and.")),
-    ("a drift leaves its beginning where it was", (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%r_in = memory%r_in + 0.0_wp*r\n      memory%eps")),
+    ("the place where a drift ends is not located", (EVENT_FORWARDS, "may = trial%drifts", "may = .false.")),
+    ("the kink of preloading at D = 0 is not located",
+     (EVENT_DILATES, "may = trial%w(1)%own%bends .and.", "may = .false. .and.")),
+    ("a drift leaves its beginning where it was",
+     (REVERSAL, "memory%r_in = r\n      memory%eps", "memory%r_in = memory%r_in + 0.0_wp*r\n      memory%eps")),
     ("sizes of substeps follow the increment",
      (SUBSTEPPING, "max(rest/number_of_pieces(rest/h), par%h_min)", "h + 0*number_of_pieces(rest)")),
     ("shear inside the elastic domain with the modulus at the stress",
@@ -239,14 +245,14 @@ MUTATIONS = [
     ("no change of the modulus at the centre with the void ratio",
      (ELASTIC, "slopes(2) = slopes(2) + by_e_centre*(1.0_wp + e_centre)/(1.0_wp + e)", "slopes(2) = slopes(2)")),
     ("a substep inside the elastic domain that does not move the stress with its start",
-     (INSIDE_DOMAIN, "dp = per_e*(share*(root/par%k_0) + de/e - de_end/e_end)", "dp = -per_e*de_end/e_end")),
+     (INSIDE_CHANGES, "dp = per_e*(share*(root/par%k_0) + de/e - de_end/e_end)", "dp = -per_e*de_end/e_end")),
     ("a straight strain that loads across nu from the start",
-     (INCREMENT, "loading%of_strain = 1.0_wp - decay", "loading%of_strain = 1.0_wp")),
+     (LOADING_CHANGES, "loading%of_strain = 1.0_wp - decay", "loading%of_strain = 1.0_wp")),
     ("what fades is not taken from the changes of rates",
-     (TRANSIENT, "factors = factors - weight*[left(i), left(i)**2]", "factors = factors - 0.0_wp*weight*[left(i), left(i)**2]")),
+     (FADING, "factors = factors - weight*[left(i), left(i)**2]", "factors = factors - 0.0_wp*weight*[left(i), left(i)**2]")),
     ("what fades does not change with the pseudo-time",
-     (TRANSIENT, "along(:, 1) = along(:, 1) - weight*d_left(:, i)", "along(:, 1) = along(:, 1) - 0.0_wp*weight*d_left(:, i)")),
-    ("no bounding surface inside the elastic domain", (EVENT_FUNCTIONS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
+     (FADING, "along(:, 1) = along(:, 1) - weight*d_left(:, i)", "along(:, 1) = along(:, 1) - 0.0_wp*weight*d_left(:, i)")),
+    ("no bounding surface inside the elastic domain", (EVENT_BOUNDS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the elastic domain ends",
      (DRIVING, "driving%exit = changes_of_exit", "driving%exit = 0.0_wp*changes_of_exit")),
     # kinks of suction, and the step control

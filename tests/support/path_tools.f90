@@ -16,9 +16,10 @@ module path_tools
    use mud_start, only: initial_state
    use mud_trace, only: trace_t
    use random_states, only: random_t, uniform
-   use mud_preloading, only: NO_CONTRACTION
+   use mud_fluidity, only: Y_FLUIDITY
+   use mud_preloading, only: NO_CONTRACTION, Y_LOG_CHI
    use mud_retention, only: retention_t
-   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_LOG_CHI, Y_FLUIDITY
+   use mud_vector, only: NY, Y_Z, Y_Z_END
    implicit none (type, external)
    private
    public :: material, isotropic, general_start, update_between, advance, rate_of_state, undrained, axial_only, &

@@ -17,6 +17,17 @@ module mud_umat
    public :: umat
 
    integer, parameter :: ELASTIC = 1   !< Tangent kind.
+
+   !> A call as the kernel takes it.
+   type :: call_t
+      real(wp), pointer, contiguous :: props(:) => null()   !< The host's; null before they are there.
+      logical :: is_read = .false.                          !< All of it is known but for par.
+      real(wp) :: stress(6), dstran(6)                      !< in the order of the kernel
+      real(wp) :: statev(NSTATV)
+      integer :: n, ntens, order(6)                         !< n: so many numbers of statev
+      type(suction_t) :: suction
+      type(params_t) :: par
+   end type call_t
 contains
    !> Suction is PREDEF(1), its increment DPRED(1); STRESS is Bishop's effective stress. On failure only PNEWDT (a
    !> factor below 1), SCD (the status code) and an elastic DDSDDE are written; where PNEWDT is NULL, STRESS becomes NaN
@@ -29,6 +40,8 @@ contains
       type(c_ptr), value :: stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpldt, stran, dstran, time, &
                             dtime, temp, dtemp, predef, dpred, cmname, ndi, nshr, ntens, nstatv_, props, nprops, &
                             coords, drot, pnewdt, celent, dfgrd0, dfgrd1, noel, npt, layer, kspt, kstep, kinc
+      type(call_t) :: given
+      type(output_t) :: output
       type(report_t) :: report
       type(mud_status_t) :: status
       type(place_t) :: place
@@ -37,12 +50,21 @@ contains
       call check_arguments(stress, statev, dstran, ndi, ntens, nstatv_, props, nprops, status)
       if (status%code == MUD_OK) then
          call look_at_host(statev, stran, dstran, time, dtime, drot, pnewdt, dfgrd1, place)
-         call update(stress, statev, ddsdde, dstran, integer_at(ntens), integer_at(nstatv_), props, &
-                     integer_at(nprops), predef, dpred, drot, pnewdt, place, report)
+         call read_call(stress, statev, dstran, integer_at(ntens), integer_at(nstatv_), props, integer_at(nprops), &
+                        predef, dpred, drot, pnewdt, place, given, status)
+      end if
+      if (status%code == MUD_OK) then
+         call kernel_point(given%par, given%stress, given%statev(:given%n), given%dstran, given%suction%start, &
+                           given%suction%change, TANGENT_FROM_PROPS, output, report)
       else
          report = failed_report(status)
       end if
-      if (report%status /= MUD_OK) call refuse(report, place, stress, ntens, pnewdt, scd)
+      if (report%status == MUD_OK) then
+         call give_results(given, output, stress, statev, ddsdde, place)
+      else
+         if (associated(given%props)) call give_elastic(given, pnewdt, ddsdde, place, report)
+         call refuse(report, place, stress, ntens, pnewdt, scd)
+      end if
 
       ! What the model does not use.
       associate (a => [c_associated(sse), c_associated(spd), c_associated(rpl), c_associated(ddsddt), &
@@ -67,95 +89,93 @@ contains
       if (is_green_strain(stran, dstran, dfgrd1, pnewdt)) call remark_on_green_strain(place)
    end subroutine look_at_host
 
-   !> The update itself, once the arguments are known to be there.
-   subroutine update(stress, statev, ddsdde, dstran, ntens, n_statev, props, n_props, predef, dpred, drot, pnewdt, &
-                     place, report)
-      type(c_ptr), intent(in) :: stress, statev, ddsdde, dstran, props, predef, dpred, drot, pnewdt
+   !> Reads a call whose arguments are known to be there. Codes of read_rotation and read_params.
+   subroutine read_call(stress, statev, dstran, ntens, n_statev, props, n_props, predef, dpred, drot, pnewdt, place, &
+                        given, status)
+      type(c_ptr), intent(in) :: stress, statev, dstran, props, predef, dpred, drot, pnewdt
       integer, intent(in) :: ntens, n_statev, n_props
       type(place_t), intent(in) :: place
-      type(report_t), intent(out) :: report
-      type(output_t) :: output
-      real(c_double), pointer, contiguous :: stress_in(:), statev_in(:), dstran_in(:), props_in(:), tangent_out(:, :)
-      real(wp) :: stress6(6), dstran6(6), statev0(NSTATV), rotation(3, 3)
-      type(params_t) :: par
-      type(mud_status_t) :: status
-      type(suction_t) :: suction
-      integer :: order(6), n
+      type(call_t), intent(inout) :: given
+      type(mud_status_t), intent(out) :: status
+      real(c_double), pointer, contiguous :: stress_in(:), statev_in(:), dstran_in(:)
+      real(wp) :: rotation(3, 3)
 
       call c_f_pointer(stress, stress_in, [ntens])
       call c_f_pointer(statev, statev_in, [n_statev])
       call c_f_pointer(dstran, dstran_in, [ntens])
-      call c_f_pointer(props, props_in, [n_props])
-      stress6 = 0.0_wp
-      dstran6 = 0.0_wp
-      stress6(1:ntens) = stress_in
-      dstran6(1:ntens) = dstran_in
-      order = component_order(props_in)
-      stress6 = stress6(order)
-      dstran6 = dstran6(order)
-      n = min(n_statev, statev_size(options_of(props_in)))
-      statev0(1:n) = statev_in(1:n)
-      call read_rotation(drot, has_past(statev0(:n)), pnewdt, rotation, status)
-      if (status%code /= MUD_OK) then
-         report = failed_report(status)
-         call give_elastic(props_in, stress6, statev0(:n), order(1:ntens), pnewdt, ddsdde)
-         return
-      end if
-      if (rotates(rotation, statev0(:n))) call rotate_statev(rotation, statev0(:n))
+      call c_f_pointer(props, given%props, [n_props])
+      given%ntens = ntens
+      given%stress = 0.0_wp
+      given%dstran = 0.0_wp
+      given%stress(1:ntens) = stress_in
+      given%dstran(1:ntens) = dstran_in
+      given%order = component_order(given%props)
+      given%stress = given%stress(given%order)
+      given%dstran = given%dstran(given%order)
+      given%n = min(n_statev, statev_size(options_of(given%props)))
+      associate (state => given%statev(:given%n))
+         state = statev_in(1:given%n)
+         call read_rotation(drot, has_past(state), pnewdt, rotation, status)
+         if (status%code /= MUD_OK) return
+         if (rotates(rotation, state)) call rotate_statev(rotation, state)
+         given%suction = read_suction(predef, dpred, pnewdt, state, given%props)
+         if (given%suction%reading /= SUCTION_AS_GIVEN) call remark_on_suction(given%suction, place)
+         given%is_read = .true.
+         call read_params(given%props, given%par, status)
+         if (status%code == MUD_OK) call remark_on_start(given%par, given%stress, state, given%suction%start, place)
+      end associate
+   end subroutine read_call
 
-      suction = read_suction(predef, dpred, pnewdt, statev0(:n), props_in)
-      if (suction%reading /= SUCTION_AS_GIVEN) call remark_on_suction(suction, place)
+   !> Gives the results of an update back to the host.
+   subroutine give_results(given, output, stress, statev, ddsdde, place)
+      type(call_t), intent(in) :: given
+      type(output_t), intent(inout) :: output   !< The stress gets the order of the host.
+      type(c_ptr), intent(in) :: stress, statev, ddsdde
+      type(place_t), intent(in) :: place
+      real(c_double), pointer, contiguous :: stress_out(:), statev_out(:), tangent_out(:, :)
 
-      call read_params(props_in, par, status)
-      if (status%code == MUD_OK) then
-         call remark_on_start(par, stress6, statev0(:n), suction%start, place)
-         call kernel_point(par, stress6, statev0(:n), dstran6, suction%start, suction%change, TANGENT_FROM_PROPS, &
-                           output, report)
-      else
-         report = failed_report(status)
-      end if
-      if (report%status /= MUD_OK) then
-         if (is_length(n_props)) then
-            call save_if_asked(completed(props_in), stress6, statev0(:n), dstran6, suction%start, suction%change, &
-                               place, report)
-         end if
-         call give_elastic(props_in, stress6, statev0(:n), order(1:ntens), pnewdt, ddsdde)
-         return
-      end if
-      if (.not. has_past(statev0(:n))) call remark_on_props(completed(props_in), place)
+      call c_f_pointer(stress, stress_out, [given%ntens])
+      call c_f_pointer(statev, statev_out, [output%n_statev])
+      if (.not. has_past(given%statev(:given%n))) call remark_on_props(completed(given%props), place)
       call remark_on_end(output%stress, output%statev, place)
-      output%stress = output%stress(order)
-      stress_in = output%stress(1:ntens)
-      statev_in(1:output%n_statev) = output%statev(1:output%n_statev)
-      if (output%has_tangent .and. c_associated(ddsdde)) then
-         call c_f_pointer(ddsdde, tangent_out, [ntens, ntens])
-         tangent_out = output%dsig_deps(order(1:ntens), order(1:ntens))
-      end if
-   end subroutine update
+      output%stress = output%stress(given%order)
+      stress_out = output%stress(1:given%ntens)
+      statev_out = output%statev(1:output%n_statev)
+      if (.not. (output%has_tangent .and. c_associated(ddsdde))) return
+      call c_f_pointer(ddsdde, tangent_out, [given%ntens, given%ntens])
+      associate (order => given%order(1:given%ntens))
+         tangent_out = output%dsig_deps(order, order)
+      end associate
+   end subroutine give_results
 
-   !> The elastic DDSDDE of the state before an increment that is refused: hosts that are asked for a cut may factorise
-   !> the matrix first, as CalculiX does. DDSDDE stays where PNEWDT is NULL, where PROPS ask for no tangent, and where
-   !> PROPS, stress or state are so wrong that they have no stiffness. Stress and state as the update has them.
-   subroutine give_elastic(props, stress, statev, order, pnewdt, ddsdde)
-      real(wp), intent(in), contiguous :: props(:)
-      real(wp), intent(in) :: stress(6)
-      real(wp), intent(in), contiguous :: statev(:)
-      integer, intent(in) :: order(:)   !< Order of the host's components, NTENS of them.
+   !> An increment that is refused: it is saved where that is asked for, and DDSDDE is the elastic one of the state
+   !> before. Hosts that are asked for a cut may factorise the matrix first, as CalculiX does. DDSDDE stays where PNEWDT
+   !> is NULL, where PROPS ask for no tangent, and where PROPS, stress or state are so wrong that it has no stiffness.
+   subroutine give_elastic(given, pnewdt, ddsdde, place, report)
+      type(call_t), intent(inout) :: given
       type(c_ptr), intent(in) :: pnewdt, ddsdde
+      type(place_t), intent(in) :: place
+      type(report_t), intent(in) :: report
       type(output_t) :: output
-      type(report_t) :: report
+      type(report_t) :: answer
       real(c_double), pointer, contiguous :: tangent_out(:, :)
-      type(params_t) :: par
       type(mud_status_t) :: status
       real(wp) :: still(6)
 
-      if (.not. (c_associated(pnewdt) .and. c_associated(ddsdde))) return
-      call read_params(props, par, status)
-      if (status%code /= MUD_OK .or. par%tangent < ELASTIC) return
-      still = 0.0_wp
-      call kernel_point(par, stress, statev, still, statev(S_SUCTION), 0.0_wp, ELASTIC, output, report)
-      if (report%status /= MUD_OK) return
-      call c_f_pointer(ddsdde, tangent_out, [size(order), size(order)])
-      tangent_out = output%dsig_deps(order, order)
+      associate (state => given%statev(:given%n))
+         if (given%is_read .and. is_length(size(given%props))) &
+            call save_if_asked(completed(given%props), given%stress, state, given%dstran, given%suction%start, &
+                               given%suction%change, place, report)
+         if (.not. (c_associated(pnewdt) .and. c_associated(ddsdde))) return
+         call read_params(given%props, given%par, status)
+         if (status%code /= MUD_OK .or. given%par%tangent < ELASTIC) return
+         still = 0.0_wp
+         call kernel_point(given%par, given%stress, state, still, state(S_SUCTION), 0.0_wp, ELASTIC, output, answer)
+      end associate
+      if (answer%status /= MUD_OK) return
+      call c_f_pointer(ddsdde, tangent_out, [given%ntens, given%ntens])
+      associate (order => given%order(1:given%ntens))
+         tangent_out = output%dsig_deps(order, order)
+      end associate
    end subroutine give_elastic
 end module mud_umat

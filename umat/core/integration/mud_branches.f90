@@ -4,9 +4,7 @@
 !> every pseudo-time, so all of this is: nothing here depends on substeps.
 module mud_branches
    use mud_kinds, only: wp
-   use mud_driving, only: slopes_of_suction
    use mud_increment, only: increment_t, void_ratio_at, suction_at, SHORTEST_PHASE
-   use mud_integration, only: integration_t
    use mud_params, only: params_t
    use mud_registry, only: MAX_TURNS
    use mud_retention, only: retention_t, saturation_t, change_with_turn, log_suction, curve_at
@@ -15,7 +13,7 @@ module mud_branches
    use mud_state, only: state_t, counters_t
    implicit none (type, external)
    private
-   public :: course_t, begin_course, list_kinks, take_branch, turn_around, end_course, MAX_KINKS
+   public :: course_t, slopes_of_suction, begin_course, list_kinks, take_branch, turn_around, end_course, MAX_KINKS
 
    integer, parameter :: HALVINGS = 60   !< Number of halvings of an increment: more than a double can tell apart.
    integer, parameter :: MAX_KINKS = 3*MAX_TURNS  !< Turning points to a turn and from it, and contacts.
@@ -213,14 +211,12 @@ contains
       end do
    end function time_of_passing
 
-   !> The branch of the phase between two pseudo-times; its middle tells what x has passed.
-   pure subroutine take_branch(from, to, course, it)
-      real(wp), intent(in) :: from, to
+   !> The branch of the phase of an increment; its middle tells what x has passed.
+   pure subroutine take_branch(course, inc)
       type(course_t), intent(in) :: course
-      type(integration_t), intent(inout) :: it
+      type(increment_t), intent(inout) :: inc
 
-      call follow(log_at(course%material, it%inc, 0.5_wp*(from + to)), course, it%inc%suction%retention_t)
-      if (it%consistent) it%sens%driving%scans = it%inc%suction%scanning%moves
+      call follow(log_at(course%material, inc, 0.5_wp*(inc%from + inc%to)), course, inc%suction%retention_t)
    end subroutine take_branch
 
    !> The branch on which x goes to a value [-].
@@ -250,21 +246,30 @@ contains
 
    !> Adds the turn of x to the path: the turning point goes with suction step and volume of the increment. x is
    !> stationary there: its place does not matter. docs/theory/material.md section 2.1.1.
-   pure subroutine turn_around(course, it)
+   pure subroutine turn_around(inc, course)
+      type(increment_t), intent(in) :: inc
       type(course_t), intent(inout) :: course
-      type(integration_t), intent(inout) :: it
       type(saturation_t) :: sat
       type(retention_t) :: branch
       real(wp) :: p_c
 
-      p_c = suction_at(it%inc, course%turn)
-      call saturation_after(course%material, p_c, void_ratio_at(it%inc, course%turn), course%path, sat, branch)
+      p_c = suction_at(inc, course%turn)
+      call saturation_after(course%material, p_c, void_ratio_at(inc, course%turn), course%path, sat, branch)
       course%slope = sat%ds_dpc*p_c
       course%turned = .true.
-      course%with_increment = course%turn*slopes_of_suction(it%inc, course%turn, course%material%omega)
-      if (it%consistent) it%sens%driving%turn = course%with_increment(1)*it%sens%driving%d_pc &
-                                                + course%with_increment(2)*it%sens%driving%d_v
+      course%with_increment = course%turn*slopes_of_suction(inc, course%turn, course%material%omega)
    end subroutine turn_around
+
+   !> Derivatives of ln x, x the modified suction p_c e^Omega, by suction [1/kPa] and volume [-]. Suction is positive
+   !> there, which is not checked. docs/theory/material.md section 2.1.1.
+   pure function slopes_of_suction(inc, time, omega) result(slopes)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, omega
+      real(wp) :: slopes(2), e
+
+      e = void_ratio_at(inc, time)
+      slopes = [1.0_wp/suction_at(inc, time), -omega*(1.0_wp + e)/e]
+   end function slopes_of_suction
 
    !> S_w and turning points at the end, the branch there, and what the turn adds to the slopes of S_w.
    !> docs/theory/material.md section 2.1.1.

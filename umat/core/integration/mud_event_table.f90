@@ -1,73 +1,206 @@
 ! SPDX-License-Identifier: MIT
-!> The events inside a substep, a row each: whose substeps it concerns, which rate its function looks at, how it is
-!> located. The functions are mud_event_functions, their derivatives mud_event_time; what an event leads to is
-!> mud_transitions. docs/theory/integration.md section 4.2.
+!> The list of the events inside a substep, in the order in which they are looked for; each is a file, mud_event_NAME.
+!> Jumps of the memory where the next substep begins are mud_transitions. docs/theory/integration.md section 4.2.
 module mud_event_table
-   use mud_cutoff, only: MODE_HELD
+   use mud_cutoff, only: is_below
+   use mud_event, only: event_t, event_changes_t, NO_RATE, RATE_THERE, RATE_IF_CLOSED, AT, NOBODY, NOTHING, EXACT, &
+      EXACT_TRIALS, last_rate, psi_at, EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, &
+      EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN, EVENT_PARTS, EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, &
+      EVENT_FORWARDS
+   use mud_event_bounds, only: BOUNDS, bounds_function, slopes_of_bounds, bounded
+   use mud_event_closes, only: CLOSES_AT, may_close, rate_without_past, closing_function, slopes_of_closing
+   use mud_event_dilates, only: DILATES, may_dilate, dilation_function, slopes_of_dilation
+   use mud_event_forwards, only: FORWARDS, may_go_forwards, backwards, slopes_of_forwards
+   use mud_event_mechanism, only: MECHANISM, mechanism_may_switch, mechanism_function, slopes_of_mechanism
+   use mud_event_opens, only: OPENS, height, slopes_of_opening, opened
+   use mud_event_parts, only: PARTS, end_at_parting
+   use mud_event_return, only: RETURNS, return_function, slopes_of_return
+   use mud_event_reversal, only: REVERSAL, look_for_reversal, slopes_of_reversal
+   use mud_event_turn, only: TURN, place_of
+   use mud_event_unload, only: UNLOAD, may_unload
+   use mud_event_yield, only: YIELD, may_yield, yield_function, slopes_of_yield, yielded
+   use mud_increment, only: increment_t, void_ratio_at
+   use mud_isotropic_memory, only: drive_of_margin
    use mud_kinds, only: wp
-   use mud_rates, only: MODE_ORDINARY
+   use mud_params, only: params_t
+   use mud_rate, only: rate_t
+   use mud_rates, only: stress_ratio
+   use mud_return_point, only: projection_on_chord
+   use mud_state, only: state_t, counters_t
+   use mud_tensor, only: LANES
+   use mud_trial, only: trial_t
+   use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: event_t, EVENTS, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND
-   public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
-             EVENT_TURN, EVENT_PARTS, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS, EVENT_DILATES
+   public :: EVENTS, look_ahead, rate_at_start, rate_at_end, event_function, slopes_of_event, event_happened
 
-   ! in the order in which they are looked for
-   integer, parameter :: EVENT_NONE = 0
-   integer, parameter :: EVENT_OPENS = 1      !< p' falls to p_min.
-   integer, parameter :: EVENT_PARTS = 2      !< The gap of a held point begins or ends: in closed form.
-   integer, parameter :: EVENT_CLOSES = 3     !< p' would rise from p_min.
-   integer, parameter :: EVENT_BOUNDS = 4     !< r exceeds the bounding surface inside the elastic domain.
-   integer, parameter :: EVENT_MECHANISM = 5  !< The isotropic mechanism begins or ends to act while suction changes.
-   integer, parameter :: EVENT_DILATES = 6    !< Contraction turns to dilation or back, with cyclic preloading.
-   integer, parameter :: EVENT_YIELD = 7      !< Compression reaches what the isotropic mechanism remembers.
-   integer, parameter :: EVENT_UNLOAD = 8     !< Compression ceases; the isotropic mechanism remembers how far it came.
-   integer, parameter :: EVENT_REVERSAL = 9   !< (r - r_in):n falls to -x_rev.
-   integer, parameter :: EVENT_RETURN = 10     !< r reaches the target of an interrupted process.
-   integer, parameter :: EVENT_FORWARDS = 11  !< A process that drifts back from its beginning goes forwards.
-   integer, parameter :: EVENT_TURN = 12      !< A process ceases to go forwards; its substep goes on.
-
-   integer, parameter :: NO_RATE = 0          !< The function looks at the state alone.
-   integer, parameter :: RATE_THERE = 1       !< The function looks at the rate there.
-   integer, parameter :: RATE_IF_CLOSED = 2   !< The function looks at the rate of a held point that closes, without a
-                                              !< past.
-
-   integer, parameter :: BEFORE = -1   !< A substep ends on its own side: its derivatives are those of that side.
-   integer, parameter :: AT = 0        !< A substep may end on either side, within rounding.
-   integer, parameter :: BEYOND = 1    !< A substep must end beyond the event, or that would not happen.
-
-   !> A function is zero below this share of its change over the substep: far enough above rounding that rounding does
-   !> not decide how many trials are made [-].
-   real(wp), parameter :: EXACT = 1.0e-12_wp
-   integer, parameter :: EXACT_TRIALS = 100   !< Bisection alone needs about 45.
-   !> A turning point ends no substep and need not be as exact [-].
-   real(wp), parameter :: NEARLY = 1.0e-6_wp
-   integer, parameter :: FEW_TRIALS = 10
-
-   type :: event_t
-      logical :: concerns(MODE_ORDINARY:MODE_HELD)   !< Substeps that are ordinary, elastic, held.
-      integer :: looks_at                            !< NO_RATE, RATE_THERE, RATE_IF_CLOSED
-      integer :: side                                !< Where the substep ends: BEFORE, AT, BEYOND.
-      logical :: moves      !< The time of the event counts in a derivative: rates are not smooth there.
-      real(wp) :: residual  !< Share of its change below which the function is zero [-].
-      integer :: trials     !< At most.
-   end type event_t
-
-   logical, parameter, dimension(MODE_ORDINARY:MODE_HELD) :: NOBODY = [.false., .false., .false.], &
-      ORDINARY = [.true., .false., .false.], ELASTIC = [.false., .true., .false.], HELD = [.false., .false., .true.]
-
+   type(event_t), parameter :: NO_EVENT = event_t(NOBODY, NO_RATE, AT, .false., NOTHING, EXACT, EXACT_TRIALS)
+   !> In the order of EVENT_*.
    type(event_t), parameter :: EVENTS(EVENT_NONE:EVENT_TURN) = [ &
-      event_t(NOBODY, NO_RATE, AT, .false., EXACT, EXACT_TRIALS), &
-      event_t(ORDINARY .or. ELASTIC, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &   ! opens
-      event_t(HELD, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                    ! parts, or the gap shuts
-      event_t(HELD, RATE_IF_CLOSED, BEYOND, .true., EXACT, EXACT_TRIALS), &      ! closes
-      event_t(ELASTIC, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                 ! exceeds the bounding surface
-      event_t(ORDINARY, RATE_THERE, BEFORE, .true., EXACT, EXACT_TRIALS), &         ! the isotropic mechanism switches
-      event_t(ORDINARY, RATE_THERE, BEFORE, .true., EXACT, EXACT_TRIALS), &         ! contraction turns to dilation
-      event_t(ORDINARY .or. ELASTIC, NO_RATE, BEYOND, .true., EXACT, EXACT_TRIALS), &     ! isotropic mechanism yields
-      event_t(ORDINARY .or. ELASTIC, RATE_THERE, BEYOND, .false., EXACT, EXACT_TRIALS), & ! and unloads
-      event_t(ORDINARY, RATE_THERE, AT, .true., EXACT, EXACT_TRIALS), &             ! reverses
-      event_t(ORDINARY, NO_RATE, AT, .true., EXACT, EXACT_TRIALS), &                ! returns
-      event_t(ORDINARY, RATE_THERE, AT, .true., EXACT, 8), &                        ! goes forwards
-      event_t(NOBODY, RATE_THERE, AT, .false., NEARLY, FEW_TRIALS)]                 ! ceases to go forwards
+      NO_EVENT, OPENS, PARTS, CLOSES_AT, BOUNDS, MECHANISM, DILATES, YIELD, UNLOAD, REVERSAL, RETURNS, FORWARDS, &
+      TURN]
+contains
+   !> Whether an event is possible in a substep h, for what its function costs; h is a share of inc [-], and error that
+   !> of the substep. Where a reversal or a parting is not at the end h is shortened. docs/theory/integration.md
+   !> section 4.2.
+   pure subroutine look_ahead(par, inc, event, error, h, trial, counters, possible)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      real(wp), intent(in) :: error
+      real(wp), intent(inout) :: h
+      type(trial_t), intent(inout) :: trial
+      type(counters_t), intent(inout) :: counters
+      logical, intent(out) :: possible
+
+      possible = .true.
+      select case (event)
+      case (EVENT_OPENS)
+         possible = is_below(par, trial%y(1:6))
+      case (EVENT_PARTS)
+         call end_at_parting(inc, trial%parts, trial%time, h, possible)
+      case (EVENT_CLOSES)
+         possible = may_close(inc, trial, h)
+      case (EVENT_MECHANISM)
+         possible = mechanism_may_switch(par, inc, trial, error)
+      case (EVENT_DILATES)
+         possible = may_dilate(par, inc, trial, error)
+      case (EVENT_YIELD)
+         possible = may_yield(par, inc, trial, h)
+      case (EVENT_UNLOAD)
+         possible = may_unload(par, inc, trial, h)
+      case (EVENT_REVERSAL)
+         call look_for_reversal(par, inc, h, trial, counters, possible)
+      case (EVENT_RETURN)
+         possible = trial%watched > 0
+      case (EVENT_FORWARDS)
+         possible = may_go_forwards(inc, trial)
+      end select
+   end subroutine look_ahead
+
+   !> The rate that an event looks at where the trial's substep h ends. Events that look at no rate leave w as it is. h
+   !> is a share of inc [-]; units of w as in rate_t. docs/theory/integration.md section 4.2.
+   pure subroutine rate_at_end(par, inc, event, trial, h, w, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: h
+      type(rate_t), intent(inout) :: w
+      type(counters_t), intent(inout) :: counters
+
+      select case (EVENTS(event)%looks_at)
+      case (RATE_THERE)
+         call last_rate(par, inc, trial, h, w, counters)
+      case (RATE_IF_CLOSED)
+         call rate_without_past(par, inc, trial%time + h, trial%y, w, counters)
+      end select
+   end subroutine rate_at_end
+
+   !> The rate that an event looks at where the trial's substep begins.
+   pure subroutine rate_at_start(par, inc, event, trial, w, counters)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial
+      type(rate_t), intent(inout) :: w
+      type(counters_t), intent(inout) :: counters
+
+      select case (EVENTS(event)%looks_at)
+      case (RATE_THERE)
+         w = trial%w(1)
+      case (RATE_IF_CLOSED)
+         call rate_without_past(par, inc, trial%time, trial%y0, w, counters)
+      end select
+   end subroutine rate_at_start
+
+   !> Function of an event, dimensionless, negative beyond it. time is a share of inc [-]; y and w are state and rate
+   !> there, w only for the events that rate_at_end knows. docs/theory/integration.md section 4.2.
+   pure real(wp) function event_function(par, inc, event, trial, time, y, w) result(f)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial       !< where the substep began
+      real(wp), intent(in) :: time, y(NY)
+      type(rate_t), intent(in) :: w
+
+      select case (event)
+      case (EVENT_OPENS)
+         f = height(par, y(1:6))
+      case (EVENT_BOUNDS)
+         f = bounds_function(par, inc, trial, time, y)
+      case (EVENT_REVERSAL)
+         f = w%x + par%x_rev
+      case (EVENT_FORWARDS)
+         f = backwards(w)
+      case (EVENT_YIELD)
+         f = yield_function(par, inc, trial, time)
+      case (EVENT_UNLOAD)
+         f = drive_of_margin(par, inc, time, w)
+      case (EVENT_MECHANISM)
+         f = mechanism_function(trial, w)
+      case (EVENT_DILATES)
+         f = dilation_function(trial, w)
+      case (EVENT_TURN)
+         f = projection_on_chord(par, place_of(par, inc, trial, w, y))
+      case (EVENT_RETURN)
+         f = return_function(par, inc, trial, time, y)
+      case default
+         f = closing_function(inc, trial%openings, w)
+      end select
+   end function event_function
+
+   !> Changes of the function of an event whose time counts, where it is zero; its scale does not matter. time is a
+   !> share of inc [-], the trial has the state there. docs/theory/integration.md section 4.3.
+   pure function slopes_of_event(par, inc, event, trial, time, w, c) result(slopes)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: event
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: time
+      type(rate_t), intent(in) :: w            !< where the event depends on a rate
+      type(event_changes_t), intent(in) :: c
+      real(wp) :: slopes(LANES)
+      real(wp) :: p, r(6)
+
+      call stress_ratio(par, trial%y(1:6), p, r)
+      select case (event)
+      case (EVENT_OPENS)
+         slopes = slopes_of_opening(c)
+      case (EVENT_PARTS)
+         slopes = c%e
+      case (EVENT_BOUNDS)
+         slopes = slopes_of_bounds(c)
+      case (EVENT_MECHANISM)
+         slopes = slopes_of_mechanism(c)
+      case (EVENT_DILATES)
+         slopes = slopes_of_dilation(w, c)
+      case (EVENT_YIELD)
+         slopes = slopes_of_yield(c)
+      case (EVENT_REVERSAL)
+         slopes = slopes_of_reversal(par, trial, w, r, c)
+      case (EVENT_RETURN)
+         slopes = slopes_of_return(par, trial, psi_at(par, inc, time, p), c)
+      case (EVENT_FORWARDS)
+         slopes = slopes_of_forwards(w, r, c)
+      case default
+         slopes = slopes_of_closing(inc, trial%openings, w, void_ratio_at(inc, time), c)
+      end select
+   end function slopes_of_event
+
+   !> An event has happened at the end of a substep that is taken over. Jumps of the memory come later.
+   pure subroutine event_happened(event, trial, state)
+      integer, intent(in) :: event
+      type(trial_t), intent(inout) :: trial
+      type(state_t), intent(inout) :: state
+
+      select case (event)
+      case (EVENT_OPENS)
+         call opened(trial)
+      case (EVENT_BOUNDS)
+         call bounded(trial)
+      case (EVENT_YIELD)
+         call yielded(state)
+      end select
+   end subroutine event_happened
 end module mud_event_table

@@ -4,23 +4,20 @@ module mud_increment
    use mud_kinds, only: wp, NOTHING
    use mud_params, only: params_t
    use mud_state, only: counters_t
-   use mud_tensor, only: LANES, ddot, trace, traces, norm, tensors_t, contracted, &
-      UNIT_STRAINS, ANY_TENSORS
-   use mud_loading, only: loading_t, no_strain, whole_strain
+   use mud_tensor, only: ddot, trace, norm
    use mud_bonding, only: suction_law_t, is_bonded, bonding
    use mud_elastic, only: centre_modulus
-   use mud_fluidity, only: recovery
+   use mud_options, only: add_volume_rates
    use mud_rate, only: rate_t
    use mud_rates, only: rate_at, conditions_t, MODE_ORDINARY, MODE_ELASTIC
-   use mud_elastic_domain, only: turning_t, turning_at, combination_t, combination_of_turning, &
-      loading_direction, exit_share, decay_at
+   use mud_elastic_domain, only: loading_direction, exit_share
    use mud_substep, only: scheme_t, SCHEMES
-   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_OPTIONS
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, end_in_domain, volume_from_centre, direction_at, void_ratio_at, &
-             suction_at, rate_of, store_rate, loading_strain, changes_of_loading_strain, has_elastic_part, &
-             live_numbers, SHORTEST_PHASE, STRAIGHT
+             suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, &
+             SHORTEST_PHASE, STRAIGHT
 
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
@@ -75,7 +72,7 @@ contains
       else
          call rate_at(par, y, at, inc%d_strain, inc%d_pc, mode, w, near)
       end if
-      if (par%fluid) w%d_ell = w%d_ell - recovery(par, inc%d_v)*y(Y_FLUIDITY)
+      call add_volume_rates(par, inc%d_v, y, w%d_own)
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
       if (w%capped_d) counters%cap_d = counters%cap_d + 1
@@ -83,15 +80,6 @@ contains
       if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
       if (w%no_root) counters%no_root = counters%no_root + 1
    end subroutine rate_of
-
-   !> Number of entries of the integrated vector that may change: those of effects that are off stand last.
-   pure integer function live_numbers(par) result(n)
-      type(params_t), intent(in) :: par
-
-      n = Y_SHEAR
-      if (par%preloading) n = Y_CONTRACTION
-      if (par%fluid) n = Y_FLUIDITY
-   end function live_numbers
 
    !> A rate as one of the integrated vector. sigma' [kPa], the others [-], per unit of pseudo-time.
    pure subroutine store_rate(w, dy)
@@ -101,9 +89,7 @@ contains
       dy(1:6) = w%d_sigma
       dy(Y_Z:Y_Z_END) = w%d_z
       dy(Y_SHEAR) = w%d_eps_q
-      dy(Y_LOG_CHI) = w%d_log_chi
-      dy(Y_CONTRACTION) = w%d_chi_own
-      dy(Y_FLUIDITY) = w%d_ell
+      dy(Y_OPTIONS:) = w%d_own
    end subroutine store_rate
 
    !> True if a part of the strain is elastic: all of it inside the elastic domain, some where that is pulled.
@@ -164,101 +150,6 @@ contains
       if (along > ACROSS*inc%length) loading = along*nu
       aside = inc%d_strain - loading
    end subroutine part
-
-   !> Changes of the part that loads with the strain rate and the elastic domain at the start, at a pseudo-time that
-   !> itself changes by dt, and those of the volumetric strain from its centre. All [-]; derivative of
-   !> docs/theory/memory-rules.md sections 4.1, 4.2.
-   pure subroutine changes_of_loading_strain(inc, mode, time, strain, centre, dt, loading)
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: mode
-      real(wp), intent(in) :: time             !< a share of inc
-      type(tensors_t), intent(in) :: strain, centre   !< changes of both
-      real(wp), intent(in) :: dt(LANES)        !< changes of the pseudo-time since the exit
-      type(loading_t), intent(inout) :: loading
-      type(turning_t) :: turning
-      type(combination_t) :: by
-      real(wp) :: along, per_rho, nu(2), nu_rate(2), turn_rate, turn, on_d, on_length, d_on_u
-      integer :: j
-
-      if (.not. has_elastic_part(inc, mode)) then
-         call whole_strain(inc%d_strain, loading)
-         return
-      else if (mode == MODE_ELASTIC) then
-         call no_strain(inc%d_strain, loading)
-         loading%beside = .true.
-         loading%aside = .true.
-         loading%from_centre = volume_from_centre(inc, time)
-         loading%of_volume = since_centre(inc, time)*traces(strain) + inc%d_v*dt
-         if (centre%kind == ANY_TENSORS) loading%of_volume = loading%of_volume + traces(centre)
-         return
-      else if (inc%straight) then
-         call changes_of_straight_strain(inc, time, strain, loading)
-         return
-      end if
-      turning = turning_at(inc%rho, inc%from_centre, inc%d_strain, time - inc%exit)
-      call combination_of_turning(turning, centre, strain, by)
-      along = ddot(turning%nu, inc%d_strain)
-      ! nu as a sum of d and u
-      nu(1) = 2.0_wp*turning%decay/(turning%rho*turning%divisor)
-      nu(2) = turning%share/turning%divisor
-      loading%basis(:, 1) = turning%d
-      loading%basis(:, 2) = turning%u
-      loading%turns = .true.
-      loading%beside = .true.
-      loading%aside = .true.
-      loading%part = along*nu
-      loading%whole = [0.0_wp, turning%length]
-      loading%of_strain = along*by%of_increment
-      loading%of_centre = along*by%of_d
-      ! the domain turns with the pseudo-time, nu' = (a - (nu:a) nu)/rho: rate of (nu:a) nu
-      per_rho = 1.0_wp/turning%rho
-      turn_rate = (turning%length**2 - 2.0_wp*along**2)*per_rho
-      nu_rate(1) = turn_rate*nu(1)
-      nu_rate(2) = turn_rate*nu(2) + along*turning%length*per_rho
-      on_d = turning%length*by%of_d
-      on_length = turning%length*by%of_increment + nu(2)
-      d_on_u = turning%length*ddot(turning%d, turning%u)
-      do j = 1, LANES
-         ! (dnu:a + nu:da) nu + (nu:a) dnu with a along u
-         turn = on_d*by%d_on_u(j) + on_length*by%length(j) + d_on_u*by%along_d(j) + turning%length*by%along_u(j) &
-                + nu(1)*by%increment_on_d(j)
-         loading%along(j, 1) = along*by%along_d(j) + nu(1)*turn + nu_rate(1)*dt(j)
-         loading%along(j, 2) = along*by%along_u(j) + nu(2)*turn + nu_rate(2)*dt(j)
-      end do
-      ! d = rho nu
-      loading%from_centre = inc%rho*trace(turning%nu)
-      on_d = inc%rho*trace(turning%d)
-      on_length = inc%rho*inc%d_v/turning%length
-      turn_rate = inc%d_v - along*(loading%from_centre/inc%rho)
-      do j = 1, LANES
-         loading%of_volume(j) = on_d*by%along_d(j) + on_length*by%along_u(j) + turn_rate*dt(j)
-      end do
-      if (strain%kind == UNIT_STRAINS) then
-         loading%of_volume(1:3) = loading%of_volume(1:3) + inc%rho*by%of_increment
-      else
-         loading%of_volume = loading%of_volume + (inc%rho*by%of_increment)*traces(strain)
-      end if
-      if (centre%kind == ANY_TENSORS) loading%of_volume = loading%of_volume + (inc%rho*by%of_d)*traces(centre)
-   end subroutine changes_of_loading_strain
-
-   !> Changes of the loading part of a strain a along nu, all of which loads: (nu:a) nu changes with a by 1 - q across
-   !> nu and by 1 along it, with the centre by q |a|/rho, where q, the tractrix's decay, is what is left of nu's first
-   !> direction. All [-]; limit of docs/theory/memory-rules.md section 4.2 for d along a.
-   pure subroutine changes_of_straight_strain(inc, time, strain, loading)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time
-      type(tensors_t), intent(in) :: strain
-      type(loading_t), intent(inout) :: loading
-      real(wp) :: decay
-
-      decay = decay_at(inc%rho, inc%length, time - inc%exit)
-      call whole_strain(inc%d_strain, loading)
-      loading%of_strain = 1.0_wp - decay
-      loading%of_centre = decay*inc%length/inc%rho
-      loading%along(:, 1) = (decay/inc%length**2)*contracted(strain, inc%d_strain)
-      loading%beside = .true.
-      loading%from_centre = inc%rho*inc%d_v/inc%length
-   end subroutine changes_of_straight_strain
 
    !> An increment of a point with void ratio e, suction p_c and a strain from_centre of the elastic domain. e and
    !> strain [-], tensor shear, compression positive; p_c and d_pc in the unit of p_atm. A change below NOTHING is none.

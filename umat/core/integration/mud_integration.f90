@@ -1,17 +1,32 @@
 ! SPDX-License-Identifier: MIT
 !> State of the integration of an increment on its way.
 module mud_integration
-   use mud_consistent, only: sensitivity_t, JUMP_NONE
-   use mud_event_table, only: EVENT_NONE
+   use mud_event, only: EVENT_NONE
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
-   use mud_state, only: state_t, counters_t
+   use mud_rate, only: rate_t
+   use mud_registry, only: MAX_INTERRUPTED
+   use mud_state, only: state_t, memory_t, counters_t
    use mud_status, only: mud_status_t
    use mud_trace, only: trace_t, record_substep
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: integration_t, record
+   public :: integration_t, jump_t, record, note_jump, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+
+   integer, parameter :: JUMP_NONE = 0
+   integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
+   integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
+   integer, parameter :: JUMP_NEW = 3        !< The point leaves the tension cut-off: no past.
+   !> Where a substep begins every process that is interrupted may go on, once more after one reversal, and the point
+   !> may close.
+   integer, parameter :: MAX_JUMPS = MAX_INTERRUPTED + 3
+
+   !> A jump of the memory where a substep begins.
+   type :: jump_t
+      integer :: kind   !< JUMP_*
+      type(memory_t) :: before, after
+   end type jump_t
 
    !> An increment on its way.
    type :: integration_t
@@ -22,8 +37,9 @@ module mud_integration
       integer :: jump = JUMP_NONE    !< JUMP_* of the memory at its start, the last one if there were several.
       integer :: event = EVENT_NONE  !< EVENT_* at which the last accepted substep ended.
       logical :: known = .false.     !< The last rate of the trial is the first of the next; one held does not close.
-      logical :: consistent          !< Derivatives are wanted, and there is something to derive.
-      type(sensitivity_t) :: sens
+      integer :: n_jumps             !< Number of jumps of the memory at its start ...
+      type(jump_t) :: jumps(MAX_JUMPS)   !< ... in their order, ...
+      type(rate_t) :: trigger        !< ... and the rate that made the last one.
       type(counters_t) :: counters
       real(wp) :: reached = 0.0_wp   !< Pseudo-time of state [-].
       type(mud_status_t) :: status
@@ -40,4 +56,18 @@ contains
       if (it%traced) call record_substep(it%inc, it%trial, h, error, sigma, outcome, it%jump, &
                                          it%event /= EVENT_NONE, it%counters, it%trace)
    end subroutine record
+
+   !> Notes a jump of the memory from `before` to what the state has now, which the trial's first rate makes.
+   pure subroutine note_jump(kind, before, it)
+      integer, intent(in) :: kind   !< JUMP_*, not JUMP_NONE
+      type(memory_t), intent(in) :: before
+      type(integration_t), intent(inout) :: it
+
+      it%jump = kind
+      it%n_jumps = it%n_jumps + 1
+      it%jumps(it%n_jumps)%kind = kind
+      it%jumps(it%n_jumps)%before = before
+      it%jumps(it%n_jumps)%after = it%state%memory
+      it%trigger = it%trial%w(1)
+   end subroutine note_jump
 end module mud_integration

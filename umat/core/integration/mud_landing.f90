@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
 !> Shortens a substep so that it ends at the event inside it; docs/theory/integration.md section 4.1.
 module mud_landing
-   use mud_cutoff, only: height_rate
-   use mud_event_functions, only: event_function, rate_at_start, rate_at_end
-   use mud_event_table, only: EVENTS, EVENT_OPENS, BEFORE, BEYOND
+   use mud_event, only: EVENT_OPENS, BEFORE, BEYOND
+   use mud_event_opens, only: height_rate
+   use mud_event_table, only: EVENTS, event_function, rate_at_start, rate_at_end
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t

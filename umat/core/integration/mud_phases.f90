@@ -2,18 +2,13 @@
 !> An increment as a list of phases. Where suction turns, passes zero or a kink of S_w, and where the strain leaves the
 !> elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
 module mud_phases
-   use mud_consistent, only: begin_stretch
-   use mud_branches, only: course_t, list_kinks, take_branch, turn_around, MAX_KINKS
-   use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
-   use mud_increment, only: increment_t, take_phase, suction_at, end_in_domain, SHORTEST_PHASE
-   use mud_integration, only: integration_t
+   use mud_branches, only: course_t, list_kinks, MAX_KINKS
+   use mud_increment, only: increment_t, suction_at, SHORTEST_PHASE
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_status, only: MUD_OK
-   use mud_substepping, only: integrate_phase
    implicit none (type, external)
    private
-   public :: integrate_phases
+   public :: cut_t, list_cuts, MAX_CUTS, CUT_TURN, CUT_NO_SUCTION, CUT_EXIT, CUT_KINK
 
    integer, parameter :: CUT_END = 0, CUT_TURN = 1, CUT_NO_SUCTION = 2, CUT_EXIT = 3, CUT_KINK = 4
    integer, parameter :: MAX_CUTS = 4 + MAX_KINKS
@@ -25,41 +20,14 @@ module mud_phases
       logical :: turns   !< x turns there.
    end type cut_t
 contains
-   !> Integrates an increment that is not zero. On return it%inc is in the phase that ended it. Errors are those of
-   !> integrate_phase; the state is then that of the last accepted substep. docs/theory/integration.md section 1.
-   pure subroutine integrate_phases(par, course, it)
-      type(params_t), intent(in) :: par
-      type(course_t), intent(inout) :: course   !< With hysteresis; otherwise without meaning.
-      type(integration_t), intent(inout) :: it
-      type(cut_t) :: cuts(MAX_CUTS)
-      real(wp) :: from, end_shift(DIRECTIONS)
-      integer :: i, n
-
-      call list_cuts(par, it%inc, course, cuts, n)
-      it%trial%divides = .false.
-      from = 0.0_wp
-      do i = 1, n
-         call take_phase(par, from, cuts(i)%time, it%inc)
-         if (par%hysteresis) call take_branch(from, cuts(i)%time, course, it)
-         if (it%consistent) then
-            end_shift = change_of_cut(par, it, cuts(i))
-            call begin_stretch(it%inc, end_shift, it%sens)
-         end if
-         call integrate_phase(par, end_shift, it)
-         if (it%status%code /= MUD_OK) return
-         if (cuts(i)%turns) call turn_around(course, it)
-         from = cuts(i)%time
-      end do
-      if (it%inc%rho > 0.0_wp) it%state%from_centre = end_in_domain(it%inc)
-   end subroutine integrate_phases
-
    !> The cuts of an increment in their order, its end the last. A phase that would be very short is joined to the next.
-   !> Cuts at one place move with the one at which rates change most: it is inserted first.
+   !> Cuts at one place move with the one at which rates change most: it is inserted first. course is read with
+   !> hysteresis. docs/theory/integration.md section 1.
    pure subroutine list_cuts(par, inc, course, cuts, n)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(course_t), intent(in) :: course
-      type(cut_t), intent(out) :: cuts(MAX_CUTS)
+      type(cut_t), intent(out) :: cuts(MAX_CUTS)   !< Entries beyond n have no meaning.
       integer, intent(out) :: n
       real(wp) :: times(MAX_KINKS)
       integer :: i, k
@@ -105,25 +73,4 @@ contains
       passes_zero = par%suction%bonds .and. abs(inc%p_c0) > 0.0_wp
       if (passes_zero) passes_zero = (inc%p_c0 > 0.0_wp) .neqv. (suction_at(inc, 1.0_wp) >= 0.0_wp)
    end function passes_zero
-
-   !> Derivatives of the pseudo-time of a cut [-].
-   pure function change_of_cut(par, it, cut) result(change)
-      type(params_t), intent(in) :: par
-      type(integration_t), intent(in) :: it
-      type(cut_t), intent(in) :: cut
-      real(wp) :: change(DIRECTIONS)
-
-      select case (cut%kind)
-      case (CUT_TURN)
-         change = change_of_turn(it%inc, cut%time, par%suction%omega, it%sens%driving)
-      case (CUT_KINK)
-         change = change_of_passing(it%inc, cut%time, par%suction%omega, it%sens%driving)
-      case (CUT_NO_SUCTION)
-         change = change_of_zero_suction(it%inc, cut%time, it%sens%driving)
-      case (CUT_EXIT)
-         change = it%sens%driving%exit
-      case default
-         change = 0.0_wp
-      end select
-   end function change_of_cut
 end module mud_phases

@@ -9,7 +9,7 @@ module mud_relaxation
    use mud_rate, only: rate_t
    use mud_substep, only: IMPLICIT_DIAGONAL, IMPLICIT_WEIGHTS
    use mud_tensor, only: IDENTITY
-   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_OPTIONS, N_OPTIONS
    implicit none (type, external)
    private
    public :: relaxation_t, relaxation_speed, new_relaxation, relax
@@ -33,20 +33,18 @@ contains
       end if
    end function relaxation_speed
 
-   !> The dyad of a rate that loads, from the slope of its L. slope is dL/d sigma' by components [1/kPa], growth that of
-   !> the fluidity per L [-]; L > 0 is not checked. docs/theory/integration.md section 2.1.
-   pure function new_relaxation(w, slope, growth) result(relaxation)
+   !> The dyad of a rate that loads, from the slope of its L. slope is dL/d sigma' by components [1/kPa], own
+   !> are the rates of the numbers of options per L [-]; L > 0 is not checked. docs/theory/integration.md section 2.1.
+   pure function new_relaxation(w, slope, own) result(relaxation)
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: slope(6), growth
+      real(wp), intent(in) :: slope(6), own(N_OPTIONS)
       type(relaxation_t) :: relaxation
 
       relaxation%slope = slope
       relaxation%flow(1:6) = -2.0_wp*w%g*w%n - (w%k_e*w%d)*IDENTITY
       relaxation%flow(Y_Z:Y_Z_END) = w%d_z/w%l
       relaxation%flow(Y_SHEAR) = SQRT_2_3
-      relaxation%flow(Y_LOG_CHI) = w%d_log_chi/w%l
-      relaxation%flow(Y_CONTRACTION) = w%d_chi_own/w%l
-      relaxation%flow(Y_FLUIDITY) = growth
+      relaxation%flow(Y_OPTIONS:) = own
       relaxation%speed = max(-dot_product(slope, relaxation%flow(1:6)), 0.0_wp)
    end function new_relaxation
 

@@ -5,6 +5,7 @@
 module mud_return_point
    use mud_kinds, only: wp, SQRT_2_3
    use mud_critical_state, only: lode_factor
+   use mud_options, only: interrupt_past, resume_past
    use mud_params, only: params_t
    use mud_registry, only: MAX_INTERRUPTED
    use mud_state, only: memory_t, interrupted_t
@@ -93,7 +94,8 @@ contains
       if (memory%depth == MAX_INTERRUPTED) memory%depth = MAX_INTERRUPTED - 2
       memory%depth = memory%depth + 1
       memory%interrupted(memory%depth) = &
-         interrupted_t(memory%r_in, memory%direction, memory%target, memory%chi_own)
+         interrupted_t(memory%r_in, memory%direction, memory%target, 0.0_wp)
+      call interrupt_past(memory)
       memory%direction = 0.0_wp
       memory%target = 0.0_wp
    end subroutine interrupt
@@ -154,8 +156,8 @@ contains
          if (ddot(r - process%r_in, t) >= ddot(r - memory%r_in, t)) memory%r_in = process%r_in
          memory%direction = process%direction
          memory%target = process%target
-         memory%chi_own = min(process%chi, memory%chi)
       end associate
+      call resume_past(k, memory)
       memory%depth = k - 1
       memory%eps_q_p = 0.0_wp
    end subroutine resume_process

@@ -3,6 +3,7 @@
 !> Jumps only: they happen between substeps, never inside a rate.
 module mud_reversal
    use mud_kinds, only: wp
+   use mud_options, only: new_past, begin_past
    use mud_params, only: params_t
    use mud_registry, only: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT
    use mud_return_point, only: interrupt
@@ -10,7 +11,7 @@ module mud_reversal
    use mud_tensor, only: ddot
    implicit none (type, external)
    private
-   public :: new_memory, begin_process, accept_process, drag_process, drags_memory, note_contraction, interrupted_share
+   public :: new_memory, begin_process, accept_process, drag_process, drags_memory, interrupted_share
 contains
    !> Memory of a point that starts at, or comes back without a past to, the stress ratio r. r and all of the memory
    !> [-]. docs/theory/material.md section 1.4.
@@ -25,9 +26,8 @@ contains
       memory%eps_q_p = 0.0_wp
       memory%x_before = 0.0_wp
       memory%x_running = 0.0_wp
-      memory%chi = 0.0_wp
-      memory%chi_own = 0.0_wp
       memory%depth = 0
+      call new_past(memory)
    end function new_memory
 
    !> A new loading process begins at r in the direction n, with an elastic rate of the stress ratio along t. r and n
@@ -60,7 +60,7 @@ contains
          memory%r_before = memory%r_in
       end select
       memory%r_in = r_in
-      memory%chi_own = 0.0_wp
+      call begin_past(memory)
       memory%eps_q_p = 0.0_wp
       memory%x_running = 0.0_wp
    end subroutine begin_process
@@ -82,20 +82,6 @@ contains
 
       drags_memory = par%guarded .and. (par%memory_rule == RULE_CLASSIC .or. par%memory_rule == RULE_RETURN_POINT)
    end function drags_memory
-
-   !> Books an accepted substep with a plastic contraction of `grown` by which ln chi' has changed by `lost`. What is
-   !> contraction of the present process comes before what dilation takes from all, or after: where D changes its sign
-   !> both are small. All [-]; docs/theory/material.md section 4.9.
-   pure subroutine note_contraction(lost, grown, memory)
-      real(wp), intent(in) :: lost, grown
-      type(memory_t), intent(inout) :: memory
-      real(wp) :: kept, more
-
-      kept = exp(min(lost, 0.0_wp))
-      more = max(grown, 0.0_wp)   ! where nothing contracts the weights of a scheme may leave rounding of either sign
-      memory%chi = memory%chi*kept + more
-      memory%chi_own = min(memory%chi_own*kept + more, memory%chi)
-   end subroutine note_contraction
 
    !> m of paper eq. (16): 1 for a process that has hardly begun, 0 for a genuine one. eps_q_p and m [-];
    !> docs/theory/memory-rules.md section 2.2.

@@ -2,11 +2,11 @@
 !> The initial state of a point, and what follows from a state: degree of saturation, state parameter, tension.
 module mud_start
    use mud_kinds, only: wp
-   use mud_blocks, only: blocks_t
    use mud_bonding, only: suction_law_t, bonding_t, is_bonded, bonding, UNBONDED
    use mud_checks, only: check_stress
    use mud_critical_state, only: state_parameter
    use mud_cutoff, only: lifted, soil_void_ratio
+   use mud_options, only: new_numbers
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_retention, only: saturation_t, saturation, log_suction
@@ -32,6 +32,7 @@ contains
       real(wp), intent(in), optional :: preset   !< S_w, with hysteresis; none or 0: on the main drying curve [-].
       type(suction_law_t) :: law
       type(path_t) :: path
+      type(saturation_t) :: sat
       real(wp) :: p, r(6)
 
       call check_stress(par, sigma, p_c, status)
@@ -46,8 +47,7 @@ contains
       end if
       state%e = e
       state%gap = 0.0_wp
-      state%margin = 0.0_wp
-      state%fluidity = 0.0_wp
+      call new_numbers(state)
       state%p_c = p_c
       state%z = 0.0_wp
       state%from_centre = 0.0_wp
@@ -65,20 +65,19 @@ contains
          law%retention_t = branch_of(par%suction%retention_t, path)
       end if
       state%sigma = lifted(par, law, sigma, e, p_c)
-      call finish_state(par, law, state)
+      call finish_state(par, law, state, sat)
       call stress_ratio(par, state%sigma, p, r)
       state%memory = new_memory(r)
    end subroutine initial_state
 
-   !> Saturation and state parameter of a state, and the saturation's slopes; with hysteresis S_w is the state's.
-   !> S_w and psi [-]; slopes [-] against volumetric strain, compression positive, and [1/kPa] against suction.
+   !> Saturation and state parameter of a state, and the saturation with its slopes; with hysteresis they are those of
+   !> the branch, and S_w is the state's. S_w and psi [-].
    !> docs/theory/material.md sections 2.1, 3.2.
-   pure subroutine finish_state(par, law, state, blocks)
+   pure subroutine finish_state(par, law, state, sat)
       type(params_t), intent(in) :: par
       type(suction_law_t), intent(in) :: law   !< with the branch of the state
       type(state_t), intent(inout) :: state
-      type(blocks_t), intent(inout), optional :: blocks
-      type(saturation_t) :: sat
+      type(saturation_t), intent(out) :: sat
       type(bonding_t) :: bond
 
       bond = UNBONDED
@@ -91,9 +90,6 @@ contains
       if (.not. par%hysteresis) state%s_w = sat%s_w
       if (state%gap > 0.0_wp .and. is_bonded(law, state%p_c)) bond = bonding(law, state%p_c, soil_void_ratio(state))
       state%psi = state_parameter(par, bond%f, soil_void_ratio(state), max(trace(state%sigma)/3.0_wp, par%p_min))
-      if (.not. present(blocks)) return
-      blocks%dsw_dpc = sat%ds_dpc
-      blocks%dsw_dev = -(1.0_wp + state%e)*sat%ds_de
    end subroutine finish_state
 
    !> True if a principal stress is negative (tensile): Sylvester's criterion fails. s is an effective stress,

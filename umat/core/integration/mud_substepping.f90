@@ -1,31 +1,27 @@
 ! SPDX-License-Identifier: MIT
-!> The substeps of a phase.
+!> The substeps of a phase: their sizes, and what an attempt leaves.
 module mud_substepping
    use mud_kinds, only: wp
-   use mud_consistent, only: propagate, changes_of_contraction, changes_at_memory, changes_of_ratio
-   use mud_driving, only: DIRECTIONS
    use mud_error_control, only: control_t, judge_attempt, proposal
-   use mud_event_table, only: EVENTS, EVENT_NONE
-   use mud_event_time, only: move_event
+   use mud_event, only: EVENT_NONE
    use mud_events, only: stop_at_event
    use mud_increment, only: increment_t, void_ratio_at, suction_at, direction_at
    use mud_integration, only: integration_t, record
    use mud_landing, only: EVENT_TOLERANCE
-   use mud_order, only: choose_stepping, choose_order, next_size, LAST_SLIVER
+   use mud_order, only: choose_order, next_size, LAST_SLIVER
    use mud_params, only: params_t
    use mud_registry, only: SCHEME_AUTOMATIC
-   use mud_status, only: fail, MUD_OK, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
+   use mud_status, only: fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
       ON_STRESS
    use mud_rates, only: MODE_ORDINARY
-   use mud_tensor, only: ddot, is_finite, all_finite, tensors_t, ANY_TENSORS
+   use mud_tensor, only: ddot, is_finite, all_finite
    use mud_trace, only: SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
    use mud_transient, only: find_transient
-   use mud_transitions, only: begin_phase, begin_substep, accept_substep, rate_is_known
+   use mud_transitions, only: accept_substep, rate_is_known
    use mud_trial, only: take_step, error_norm
-   use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR, Y_CONTRACTION, Y_FLUIDITY
    implicit none (type, external)
    private
-   public :: integrate_phase
+   public :: stepping_t, begin_phase, try_substep, end_substep, end_phase
 
    !> Steps of a phase: sizes are shares of the increment, with the scheme automatic those of third order [-].
    type :: stepping_t
@@ -49,53 +45,30 @@ module mud_substepping
    !> the rates leave is of the angle's third power [-].
    real(wp), parameter :: TURN_PIECE = 0.7_wp, NARROW = 0.12_wp
 contains
-   !> Integrates the phase of it%inc. Its end moves by end_shift along the directions of the derivatives [-]. Errors in
-   !> it%status: MUD_TOO_MANY_SUBSTEPS, MUD_MINIMUM_STEP, MUD_NOT_FINITE, MUD_NO_DIRECTION; the state is then that of
-   !> the last accepted substep. docs/theory/integration.md sections 1 to 4.
-   pure subroutine integrate_phase(par, end_shift, it)
+   !> The phase of it%inc begins. docs/theory/integration.md section 1.
+   pure subroutine begin_phase(par, step, it)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: end_shift(DIRECTIONS)   !< Not read where no derivatives are wanted.
+      type(stepping_t), intent(out) :: step
       type(integration_t), intent(inout) :: it
-      type(stepping_t) :: step
-      real(wp) :: time, h
 
-      call begin_phase(it)
+      it%known = .false.
+      it%event = EVENT_NONE
+      it%trial%pressed = .false.
+      it%trial%relaxation%speed = 0.0_wp
+      it%trial%transient%sought = .false.
+      it%trial%transient%known = .false.
+      it%trial%openings = 0
+      it%trial%drifts = .false.
       step = first_step(par, it)
-      time = it%inc%from
-      do while (time < it%inc%to)
-         it%reached = time
-         it%trial%time = time
-         it%trial%y0(1:6) = it%state%sigma
-         it%trial%y0(Y_Z:Y_Z_END) = it%state%z
-         it%trial%y0(Y_SHEAR:Y_CONTRACTION) = 0.0_wp
-         it%trial%y0(Y_FLUIDITY) = it%state%fluidity
-         call begin_substep(par, it)
-         call choose_stepping(par, it%inc%to - time, max(step%h, par%h_min), it%inc, it%trial)
-         call try_substep(par, step, h, it)
-         if (it%status%code /= MUD_OK) return
+   end subroutine begin_phase
 
-         step%h = next_size(par, it%inc, it%trial, h, step%factor, h >= it%inc%to - it%inc%from)
-         call stop_at_event(par, step%error, h, it)
-         if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
-         if (step%elastic > 1 .and. par%guarded) then
-            it%status = fail(MUD_NO_DIRECTION)
-            call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
-            return
-         end if
-         time = time + h
-         if (it%inc%to - time < EVENT_TOLERANCE) time = it%inc%to
-         if (time < it%inc%to) step%planned = step%h*it%size
-         call leave_substep(par, end_shift, time, h, step%error, it)
-      end do
-      if (.not. it%inc%inside) it%state%last_step = proposal(it%inc, step%planned, step%h*it%size, step%factor)
-      it%reached = it%inc%to
-   end subroutine integrate_phase
-
-   !> Attempts at a substep until one has an error that is allowed; h is its size, a share of the increment [-].
+   !> Attempts at a substep that has begun until one has an error that is allowed. Errors in it%status:
+   !> MUD_TOO_MANY_SUBSTEPS, MUD_MINIMUM_STEP, MUD_NOT_FINITE; the state is then that of its start.
+   !> docs/theory/integration.md sections 2, 3.
    pure subroutine try_substep(par, step, h, it)
       type(params_t), intent(in) :: par
       type(stepping_t), intent(inout) :: step
-      real(wp), intent(out) :: h
+      real(wp), intent(out) :: h               !< size of the last one, a share of the increment [-]
       type(integration_t), intent(inout) :: it
       real(wp) :: rest, tolerance
       logical :: may_grow
@@ -161,29 +134,41 @@ contains
       end if
    end function number_of_pieces
 
-   !> Takes over a substep h that ends at a pseudo-time, at an event or not; its derivatives first.
-   pure subroutine leave_substep(par, end_shift, time, h, error, it)
+   !> Ends a substep h at the first event in it, and takes it over. MUD_NO_DIRECTION in it%status: the second without a
+   !> direction in a phase; the state is then that of its start. docs/theory/integration.md sections 2 to 4.
+   pure subroutine end_substep(par, step, h, it)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: end_shift(DIRECTIONS), time, h, error
+      type(stepping_t), intent(inout) :: step
+      real(wp), intent(inout) :: h             !< size, a share of the increment [-]
       type(integration_t), intent(inout) :: it
+      real(wp) :: time
 
+      step%h = next_size(par, it%inc, it%trial, h, step%factor, h >= it%inc%to - it%inc%from)
+      call stop_at_event(par, step%error, h, it)
+      if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
+      if (step%elastic > 1 .and. par%guarded) then
+         it%status = fail(MUD_NO_DIRECTION)
+         call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
+         return
+      end if
+      time = it%trial%time + h
+      if (it%inc%to - time < EVENT_TOLERANCE) time = it%inc%to
+      if (time < it%inc%to) step%planned = step%h*it%size
+      it%reached = time
       it%state%e = void_ratio_at(it%inc, time)
       it%state%p_c = suction_at(it%inc, time)
-      if (it%consistent) then
-         call propagate(par, it%inc, it%trial, h, time >= it%inc%to, end_shift, it%sens)
-         if (EVENTS(it%event)%moves .and. time < it%inc%to) &
-            call move_event(par, it%inc, it%event, it%trial, h, it%sens)
-         if (par%preloading) call changes_of_contraction(it%trial, it%state%memory%chi_own, it%sens)
-      end if
       call accept_substep(par, h, it)
-      if (it%trial%drifts .and. it%consistent) &
-         it%sens%r_in = tensors_t(changes_of_ratio(par, it%state%sigma, it%sens%y), ANY_TENSORS)
-      if (par%remembers .and. it%consistent) then
-         if (it%state%margin >= 0.0_wp) call changes_at_memory(par, it%inc, time, it%state%sigma, it%sens)
-      end if
-      call record(h, error, it%state%sigma, SUBSTEP_ACCEPTED, it)
+      call record(h, step%error, it%state%sigma, SUBSTEP_ACCEPTED, it)
       it%known = rate_is_known(it)
-   end subroutine leave_substep
+   end subroutine end_substep
+
+   !> The phase of it%inc is over: the state keeps the size of substeps. docs/theory/integration.md section 3.
+   pure subroutine end_phase(step, it)
+      type(stepping_t), intent(in) :: step
+      type(integration_t), intent(inout) :: it
+
+      if (.not. it%inc%inside) it%state%last_step = proposal(it%inc, step%planned, step%h*it%size, step%factor)
+   end subroutine end_phase
 
    !> The steps with which a phase begins.
    pure function first_step(par, it) result(step)

@@ -9,12 +9,11 @@ module mud_transient
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
    use mud_state, only: counters_t
-   use mud_tensor, only: LANES, norm
+   use mud_tensor, only: norm
    use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: transient_t, fading_t, NO_FADING, find_transient, without_turn, half_way, begin_fading, &
-             take_fading, add_faded, change_of_left, add_changes_of_faded
+   public :: transient_t, find_transient, without_turn, half_way, split, take_fading, add_faded
 
    !> Rates that fade, per unit of pseudo-time.
    type :: transient_t
@@ -27,12 +26,6 @@ module mud_transient
       type(rate_t) :: far, half     !< Rates from the same start without the turn; half-way, where there are two terms.
    end type transient_t
 
-   !> Changes of the parts that fade, along the directions of a derivative.
-   type :: fading_t
-      real(wp) :: parts(LANES, NY, 2), speed(LANES), since(LANES)
-   end type fading_t
-   type(fading_t), parameter :: NO_FADING = fading_t(0.0_wp, 0.0_wp, 0.0_wp)
-
    real(wp), parameter :: LN_2 = log(2.0_wp)   !< k t at which the first part has fallen to a half [-].
    !> Shorter attempts, as shares of the radius, follow the turn as it is, and so does a last piece that ends before the
    !> turn is half-way [-].
@@ -40,8 +33,6 @@ module mud_transient
    !> The second part, of the second power of the angle, is left out where the stress that the centre lags behind moves
    !> by less than this share of the tolerance [-].
    real(wp), parameter :: ONE_TERM = 0.1_wp
-   !> k t beyond which the parts are below rounding [-].
-   real(wp), parameter :: GONE = 40.0_wp
    !> 1 minus the cosine of the angle, 60 degrees, beyond which two parts do not describe the turn [-].
    real(wp), parameter :: LARGEST = 0.5_wp
 contains
@@ -108,24 +99,6 @@ contains
       first = now - far - second
    end subroutine split
 
-   !> Changes of the parts from those of the three rates, half that of two terms; k changes by speed, the time from
-   !> which they fade by since. Derivative of docs/theory/integration.md section 2.2.
-   pure subroutine begin_fading(now, far, speed, since, fading, half)
-      real(wp), intent(in), dimension(LANES, NY) :: now, far
-      real(wp), intent(in), dimension(LANES) :: speed, since
-      type(fading_t), intent(inout) :: fading
-      real(wp), intent(in), optional :: half(LANES, NY)
-
-      if (present(half)) then
-         call split(now, far, half, fading%parts(:, :, 1), fading%parts(:, :, 2))
-      else
-         fading%parts(:, :, 1) = now - far
-         fading%parts(:, :, 2) = 0.0_wp
-      end if
-      fading%speed = speed
-      fading%since = since
-   end subroutine begin_fading
-
    !> Takes from a rate at a pseudo-time [-] what fades of it. rate as the integrated vector, per unit of pseudo-time.
    !> docs/theory/integration.md section 2.2.
    pure subroutine take_fading(transient, time, rate)
@@ -153,64 +126,4 @@ contains
       y = y + ((before - after)/transient%speed) &
           *(transient%parts(:, 1) + (0.5_wp*(before + after))*transient%parts(:, 2))
    end subroutine add_faded
-
-   !> Changes of a vector: what fades is taken of the rates that lead to it, and added as it is. `weights` are those of
-   !> the rates, h the size of the substep; left and d_left belong to them, then to where the vector stands: at the
-   !> start of the substep, at its stages, there. y as the integrated vector, its first columns. Derivative of
-   !> docs/theory/integration.md section 2.2.
-   pure subroutine add_changes_of_faded(transient, fading, n, h, weights, left, d_left, live, y)
-      type(transient_t), intent(in) :: transient
-      type(fading_t), intent(in) :: fading
-      integer, intent(in) :: n, live   !< live: numbers that may change
-      real(wp), intent(in) :: h, weights(n), left(n + 1), d_left(LANES, n + 1)
-      real(wp), intent(inout) :: y(LANES, live)
-      real(wp) :: factors(2), along(LANES, 2), weight
-      integer :: i
-
-      if (left(1) <= 0.0_wp) return
-      associate (before => left(1), after => left(n + 1))
-         factors(1) = (before - after)/transient%speed
-         factors(2) = 0.5_wp*(before + after)*factors(1)
-         if (transient%terms == 0) then
-            factors(1) = factors(1) - h*dot_product(weights, left(1:n))
-            do i = 1, live
-               y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1)
-            end do
-            return
-         end if
-         along(:, 1) = (d_left(:, 1) - d_left(:, n + 1) - factors(1)*fading%speed)/transient%speed
-         along(:, 2) = (before*d_left(:, 1) - after*d_left(:, n + 1) - factors(2)*fading%speed)/transient%speed
-      end associate
-      do i = 1, n
-         weight = h*weights(i)
-         factors = factors - weight*[left(i), left(i)**2]
-         along(:, 1) = along(:, 1) - weight*d_left(:, i)
-         along(:, 2) = along(:, 2) - (2.0_wp*weight*left(i))*d_left(:, i)
-      end do
-      if (transient%terms == 1) then
-         do i = 1, live
-            y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1) + along(:, 1)*transient%parts(i, 1)
-         end do
-         return
-      end if
-      do i = 1, live
-         y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1) + factors(2)*fading%parts(:, i, 2) &
-                   + along(:, 1)*transient%parts(i, 1) + along(:, 2)*transient%parts(i, 2)
-      end do
-   end subroutine add_changes_of_faded
-
-   !> Share that is left of the first part at a pseudo-time that changes by dt, and the change of this share [-]; zeros
-   !> where it is below rounding. Derivative of docs/theory/integration.md section 2.2.
-   pure subroutine change_of_left(transient, fading, time, dt, left, change)
-      type(transient_t), intent(in) :: transient
-      type(fading_t), intent(in) :: fading
-      real(wp), intent(in) :: time, dt(LANES)
-      real(wp), intent(out) :: left, change(LANES)
-
-      left = 0.0_wp
-      change = 0.0_wp
-      if (transient%speed*(time - transient%since) > GONE) return
-      left = exp(-transient%speed*(time - transient%since))
-      change = -left*((time - transient%since)*fading%speed + transient%speed*(dt - fading%since))
-   end subroutine change_of_left
 end module mud_transient

@@ -5,44 +5,30 @@ module mud_transitions
    use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
    use mud_kinds, only: wp
    use mud_bounding, only: excess
-   use mud_consistent, only: jump_of_memory, changes_of_parting, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-   use mud_cutoff, only: landed, may_open, closing_mode, closes, parting, gap_at, MODE_HELD
-   use mud_event_functions, only: elastic_rate, psi_at, backwards, LARGEST_EXCESS
-   use mud_event_table, only: EVENT_NONE, EVENT_OPENS, EVENT_BOUNDS, EVENT_YIELD, EVENT_REVERSAL, EVENT_RETURN, &
-      EVENT_FORWARDS
+   use mud_cutoff, only: landed, may_open, parting, gap_at, MODE_HELD
+   use mud_event, only: elastic_rate, psi_at, EVENT_NONE, EVENT_REVERSAL, EVENT_RETURN, EVENT_FORWARDS
+   use mud_event_bounds, only: LARGEST_EXCESS
+   use mud_event_closes, only: closing_mode, closes
+   use mud_event_forwards, only: backwards
+   use mud_event_table, only: event_happened
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
-   use mud_integration, only: integration_t
+   use mud_integration, only: integration_t, note_jump, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   use mud_options, only: begin_numbers, take_past, forget_past, past_counts, keep_numbers
    use mud_params, only: params_t
-   use mud_preloading, only: log_contraction, NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_registry, only: RULE_RETURN_POINT
    use mud_return_point, only: watched_process, beyond_target, resume_process
-   use mud_reversal, only: new_memory, begin_process, accept_process, drag_process, drags_memory, note_contraction
+   use mud_reversal, only: new_memory, begin_process, accept_process, drag_process, drags_memory
    use mud_state, only: memory_t
    use mud_tensor, only: ddot, norm
-   use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
-   public :: begin_phase, begin_substep, accept_substep, rate_is_known
+   public :: begin_substep, accept_substep, rate_is_known
 
 contains
-   !> Sets what a trial holds before the first substep of an increment or phase. Its stress and rate are those of
-   !> begin_substep.
-   pure subroutine begin_phase(it)
-      type(integration_t), intent(inout) :: it
-
-      it%known = .false.
-      it%event = EVENT_NONE
-      it%trial%pressed = .false.
-      it%trial%relaxation%speed = 0.0_wp
-      it%trial%transient%sought = .false.
-      it%trial%transient%known = .false.
-      it%trial%openings = 0
-      it%trial%drifts = .false.
-   end subroutine begin_phase
-
    !> Decides what the coming substep is - ordinary, elastic or held by the tension cut-off - applies the memory rule,
    !> and leaves the first rate in the trial. docs/theory/integration.md section 1, docs/theory/memory-rules.md section
    !> 3.5, docs/theory/material.md section 6.
@@ -52,8 +38,15 @@ contains
       real(wp) :: p, r(6), outwards
       logical :: dragged
 
+      it%trial%time = it%reached
+      it%trial%y0(1:6) = it%state%sigma
+      it%trial%y0(Y_Z:Y_Z_END) = it%state%z
+      it%trial%y0(Y_SHEAR) = 0.0_wp
+      call begin_numbers(it%state, it%trial%y0)
+      it%trial%e = it%state%e
       if (par%remembers) call begin_below_memory(it)
       it%jump = JUMP_NONE
+      it%n_jumps = 0
       it%trial%watched = 0
       it%trial%advanced = .false.
       dragged = it%trial%drifts
@@ -79,7 +72,7 @@ contains
       if (it%trial%mode == MODE_ORDINARY) then
          if (it%known) then
             it%trial%w(1) = it%trial%w(it%inc%scheme%stages)
-            if (dragged) call rate_at_beginning(par, it%trial%w(1), it)
+            if (dragged) call rate_at_beginning(par, it)
          else
             call first_rate(par, it)
          end if
@@ -106,7 +99,7 @@ contains
       type(integration_t), intent(inout) :: it
 
       it%trial%r_in = it%state%memory%r_in
-      if (par%preloading) it%trial%y0(Y_LOG_CHI) = log_contraction(it%state%memory%chi, it%state%memory%chi_own)
+      call take_past(par, it%state%memory, it%trial%y0, it%trial%past)
    end subroutine take_memory
 
    !> Below what it remembers the isotropic mechanism rests. A rate that is known is that of what it did before.
@@ -139,17 +132,6 @@ contains
       call rate_of(par, it%inc, it%trial%time, it%trial%y0, it%trial%r_in, it%trial%mode, it%trial%w(1), it%counters)
    end subroutine first_rate
 
-   !> Derivatives of the memory across its jump, which `trigger` made.
-   pure subroutine follow_jump(par, before, trigger, it)
-      type(params_t), intent(in) :: par
-      type(memory_t), intent(in) :: before
-      type(rate_t), intent(in) :: trigger
-      type(integration_t), intent(inout) :: it
-
-      if (it%consistent) &
-         call jump_of_memory(par, it%inc, it%jump, before, it%state%memory, trigger, it%trial, it%sens)
-   end subroutine follow_jump
-
    !> True after a substep whose last rate is the first of the next, or which is held and does not close at its end.
    !> docs/theory/integration.md section 2.
    pure logical function rate_is_known(it)
@@ -166,7 +148,6 @@ contains
       type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: r(6)
       type(memory_t) :: before
-      type(rate_t) :: trigger
       real(wp) :: t(6)
       logical :: noise
 
@@ -186,25 +167,22 @@ contains
          end if
       end if
       it%counters%reset = it%counters%reset + 1
-      it%jump = JUMP_REVERSAL
-      trigger = it%trial%w(1)
       before = it%state%memory
-      call begin_process(par, r, trigger%n, t, it%state%memory)
-      call follow_jump(par, before, trigger, it)
+      call begin_process(par, r, it%trial%w(1)%n, t, it%state%memory)
+      call note_jump(JUMP_REVERSAL, before, it)
       call take_memory(par, it)
-      call rate_at_beginning(par, trigger, it)
+      call rate_at_beginning(par, it)
       if (par%memory_rule == RULE_RETURN_POINT) then
          call try_to_return(par, .false., r, t, it)
       end if
    end subroutine apply_memory_rule
 
-   !> The rate where a process begins that the trial has taken over, from that of the memory before.
-   pure subroutine rate_at_beginning(par, before, it)
+   !> The rate where a process begins that the trial has taken over, from that of the memory before, which it holds.
+   pure subroutine rate_at_beginning(par, it)
       type(params_t), intent(in) :: par
-      type(rate_t), intent(in) :: before
       type(integration_t), intent(inout) :: it
 
-      if (stays_floored(par, before, it%trial%r_in) .and. .not. par%preloading) then
+      if (stays_floored(par, it%trial%w(1), it%trial%r_in) .and. .not. past_counts(par)) then
          it%trial%w(1)%r_moved = 0.0_wp
          it%trial%w(1)%x = 0.0_wp
       else
@@ -231,7 +209,6 @@ contains
       logical, intent(in) :: landed          !< On the target: rounding does not count.
       real(wp), intent(in) :: r(6), t(6)
       type(memory_t) :: before
-      type(rate_t) :: trigger
       logical :: reached
 
       reached = landed
@@ -241,11 +218,9 @@ contains
          it%trial%process = it%state%memory%interrupted(it%trial%watched)
          if (.not. reached) reached = beyond_target(par, it%trial%process, r, it%trial%w(1)%m_b) >= 0.0_wp
          if (.not. reached) return
-         it%jump = JUMP_RETURN
          before = it%state%memory
          call resume_process(it%trial%watched, r, t, it%state%memory)
-         trigger = it%trial%w(1)
-         call follow_jump(par, before, trigger, it)
+         call note_jump(JUMP_RETURN, before, it)
          call take_memory(par, it)
          call first_rate(par, it)
          reached = .false.
@@ -259,7 +234,6 @@ contains
       type(integration_t), intent(inout) :: it
       real(wp), intent(in) :: r(6)
       type(memory_t) :: before
-      type(rate_t) :: trigger
 
       it%trial%watched = 0
       it%inc%rests = .false.
@@ -268,7 +242,7 @@ contains
          it%trial%w(1)%no_root = .false.
       else
          it%trial%r_in = r
-         if (par%preloading) it%trial%y0(Y_LOG_CHI) = NO_CONTRACTION
+         call forget_past(it%trial%y0)
          it%trial%mode = closing_mode(it%inc)
          call first_rate(par, it)
          it%state%open = .not. closes(it%inc, it%trial%openings, it%trial%w(1))
@@ -276,14 +250,12 @@ contains
       if (it%state%open) then
          it%trial%mode = MODE_HELD
          it%trial%parts = parting(par, it%state)
-         if (it%consistent .and. it%state%gap <= 0.0_wp) call changes_of_parting(it%inc, it%trial, it%state%e, it%sens)
          return
       end if
-      it%jump = JUMP_NEW
       before = it%state%memory
       it%state%memory = new_memory(r)
-      trigger = it%trial%w(1)
-      call follow_jump(par, before, trigger, it)
+      call take_past(par, it%state%memory, it%trial%y0, it%trial%past)
+      call note_jump(JUMP_NEW, before, it)
    end subroutine try_to_close
 
    !> Takes over an accepted substep; state already has its void ratio and suction. With the tension cut-off on, a mean
@@ -303,19 +275,10 @@ contains
       end if
       it%state%z = it%trial%y(Y_Z:Y_Z_END)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(Y_SHEAR)
-      ! a scheme's weights may leave rounding of either sign
-      if (par%fluid) it%state%fluidity = min(max(it%trial%y(Y_FLUIDITY), 0.0_wp), par%ell_max)
-      if (par%preloading) &
-         call note_contraction(it%trial%y(Y_LOG_CHI) - it%trial%y0(Y_LOG_CHI), it%trial%y(Y_CONTRACTION), &
-                               it%state%memory)
-      if (it%inc%rests) then
-         it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
-         if (it%event == EVENT_YIELD) it%state%margin = 0.0_wp
-      end if
+      call keep_numbers(par, it%trial%y0, it%trial%y, it%state)
+      if (it%inc%rests) it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
       it%state%sigma = landed(par, it%state%sigma)
-      if (it%event == EVENT_OPENS) it%trial%openings = it%trial%openings + 1
-      ! beyond the surface by a landing, whichever way the strain leads: suction may move the surface
-      if (it%event == EVENT_BOUNDS) it%trial%pressed = .true.
+      call event_happened(it%event, it%trial, it%state)
       if (it%trial%drifts) then
          call stress_ratio(par, it%state%sigma, p, r)
          call drag_process(r, it%trial%y(Y_SHEAR), it%state%memory)

@@ -5,6 +5,7 @@ module mud_trial
    use mud_cutoff, only: hold, MODE_HELD
    use mud_increment, only: increment_t, rate_of, store_rate
    use mud_inside_domain, only: has_closed_form, move_inside
+   use mud_options, only: error_of_numbers
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_relaxation, only: relaxation_t, relax
@@ -12,13 +13,12 @@ module mud_trial
    use mud_substep, only: scheme_t, MAX_STAGES, stage_point, solution, error_vector
    use mud_tensor, only: norm
    use mud_transient, only: transient_t, take_fading, add_faded
-   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
    public :: trial_t, take_step, error_norm
 
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Scale of the plastic shear in the error norm [-].
-   real(wp), parameter :: CONTRACTION_SCALE = 0.01_wp     !< Scale of the contraction in the error norm [-].
    !> Errors of stresses below this share of p_atm count as if the stress were that large: 1e-5 of 0.1 kPa is nothing
    !> that a host could see, and costs thousands of rates an update [-].
    real(wp), parameter :: SMALL_STRESS = 0.01_wp
@@ -45,6 +45,8 @@ module mud_trial
       type(transient_t) :: transient     !< Parts of the rates that fade; those in w are without them.
       real(wp) :: parts             !< Void ratio at which the grains of a held point part [-].
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
+      real(wp) :: e                 !< Void ratio at y0 [-].
+      real(wp) :: past              !< A number of the memory beside y0, for options [-].
       real(wp) :: margin            !< Margin of the isotropic memory at y0; read where the mechanism rests [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
       type(interrupted_t) :: process   !< The interrupted process of that number.
@@ -108,9 +110,6 @@ contains
       if (trial%closed) return
       call error_vector(scheme, trial%rates, h, delta)
       error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(Y_Z:Y_Z_END))/par%z_max, &
-                  abs(delta(Y_SHEAR))/PLASTIC_SHEAR_SCALE)
-      if (par%fluid) error = max(error, abs(delta(Y_FLUIDITY))/(1.0_wp + trial%y(Y_FLUIDITY)))
-      ! in first loading nothing follows them
-      if (trial%w(1)%preloaded) error = max(error, abs(delta(Y_LOG_CHI)), abs(delta(Y_CONTRACTION))/CONTRACTION_SCALE)
+                  abs(delta(Y_SHEAR))/PLASTIC_SHEAR_SCALE, error_of_numbers(par, trial%y, delta, trial%w(1)%own%bends))
    end function error_norm
 end module mud_trial

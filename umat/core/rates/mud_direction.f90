@@ -39,6 +39,11 @@ contains
    !> The unit direction n and what depends on it. Leaves w%loading false and sets w%no_root where none is admissible.
    !> On entry w has r, r - r_in, z, moduli and t > 0 of the rate, units as in rate_t. docs/theory/material.md sections
    !> 4.6, 5.
+   !>
+   !> Wanted is the admissible root of the direction equation with the smallest |w| on the side where it lies. An angle
+   !> is known by the tangent of its half, tau: its cosine and sine then cost a division. In units of that side the
+   !> residual begins negative at w = 0. With every guard on it ends positive at a right angle, so a bracketed Newton
+   !> iteration cannot fail. Where the floor or a cap acts, and with guards off, several roots or none are possible.
    pure subroutine find_direction(par, known, w)
       type(params_t), intent(in) :: par
       logical, intent(in) :: known          !< w%n is the direction for nearly the same t: a start of the iteration.
@@ -46,8 +51,8 @@ contains
       type(arc_t) :: arc
       type(equation_t) :: eq
       type(angle_t) :: at
-      real(wp) :: n_t(6), q(6), start, tau
-      logical :: found
+      real(wp) :: n_t(6), q(6), side, start, tau
+      logical :: guarded, found
 
       n_t = w%t/w%t_norm
       call arc_through(w%r, w%r_moved, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
@@ -69,7 +74,17 @@ contains
             ! a direction against t has no half angle
             if (ddot(w%n, n_t) > -0.9_wp) start = ddot(w%n, q)/(1.0_wp + ddot(w%n, n_t))
          end if
-         call find_angle(par, eq, arc, start, w, tau, at, found)
+         guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
+         call find_side(par, eq, arc, guarded, start, w, side, at)
+         w%several = .not. guarded
+         tau = 1.0_wp
+         found = .false.
+         if (guarded) then
+            call newton(par, eq, arc, side, 0.0_wp, 1.0_wp, start, w, tau, at)
+            found = at%admissible > 0.0_wp
+            if (found) w%several = .not. single_root(par, eq, arc, side, at, w)
+         end if
+         if (w%several .or. .not. found) call scan_for_root(par, eq, arc, side, w, tau, at, found)
          w%n = at%cosine*n_t + at%sine*q
       end if
       w%loading = found
@@ -79,59 +94,51 @@ contains
       w%l = w%h_b/w%y
    end subroutine find_direction
 
-   !> The admissible root of the direction equation with the smallest |w| on the side where it lies. An angle is known
-   !> by the tangent of its half, tau: its cosine and sine then cost a division.
-   !>
-   !> In units of that side the residual begins negative at w = 0. With every guard on it ends positive at a right
-   !> angle, so a bracketed Newton iteration cannot fail. Where the floor or a cap acts, and with guards off, several
-   !> roots or none are possible: there the arc is scanned for the first change of sign.
-   pure subroutine find_angle(par, eq, arc, guess, w, tau, at, found)
+   !> The side of the arc on which the root lies, and where the iteration starts.
+   pure subroutine find_side(par, eq, arc, guarded, start, w, side, at)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
       type(arc_t), intent(in) :: arc
-      real(wp), intent(in) :: guess     !< tau, if it is on the side where the root lies
+      logical, intent(in) :: guarded
+      real(wp), intent(inout) :: start   !< tau of a guess; then without sign, of a right angle at most
       type(rate_t), intent(inout) :: w
-      real(wp), intent(out) :: tau      !< with the sign of w
-      type(angle_t), intent(out) :: at
-      logical, intent(out) :: found
-      real(wp) :: side, low, high, last, start
-      logical :: guarded, crossed, known
+      real(wp), intent(out) :: side
+      type(angle_t), intent(inout) :: at
+      logical :: known
 
-      guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
-      w%several = .not. guarded
       ! Where r along t is below the dilatancy surface of every Lode angle D is not negative there, and beta positive.
-      known = guarded .and. guess > 0.0_wp .and. guess < 1.0_wp .and. &
+      known = guarded .and. start > 0.0_wp .and. start < 1.0_wp .and. &
               arc%r_t <= merge(min(par%c, 1.0_wp), 1.0_wp, par%lode)*eq%r_d_1
       side = 1.0_wp
       if (.not. known) then
          call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
          side = sign(1.0_wp, w%beta)
       end if
-      last = 1.0_wp
-      found = .false.
-      if (guarded) then
-         start = side*guess
-         if (start <= 0.0_wp .or. start >= 1.0_wp) then
-            start = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
-            start = start/(1.0_wp + sqrt(1.0_wp - start*start))
-         end if
-         call newton(par, eq, arc, side, 0.0_wp, 1.0_wp, start, w, tau, at)
-         found = at%admissible > 0.0_wp
-         last = abs(tau)
-         if (found) then
-            w%several = .not. single_root(par, eq, arc, side, at, w)
-            if (.not. w%several) return
-            call scan_arc(par, eq, arc, side, last, .true., low, high, crossed)
-            if (.not. crossed) return
-         end if
+      start = side*start
+      if (guarded .and. (start <= 0.0_wp .or. start >= 1.0_wp)) then
+         start = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
+         start = start/(1.0_wp + sqrt(1.0_wp - start*start))
       end if
-      if (.not. found) then
-         call scan_arc(par, eq, arc, side, last, .false., low, high, found)
-         if (.not. found) return
-      end if
+   end subroutine find_side
+
+   !> Looks for a first change of sign up to |tau|, a root already found or the end of the arc, and for the root there.
+   pure subroutine scan_for_root(par, eq, arc, side, w, tau, at, found)
+      type(params_t), intent(in) :: par
+      type(equation_t), intent(in) :: eq
+      type(arc_t), intent(in) :: arc
+      real(wp), intent(in) :: side
+      type(rate_t), intent(inout) :: w
+      real(wp), intent(inout) :: tau
+      type(angle_t), intent(inout) :: at
+      logical, intent(inout) :: found   !< tau is a root; at the end w and at belong to one
+      real(wp) :: low, high
+      logical :: crossed
+
+      call scan_arc(par, eq, arc, side, abs(tau), found, low, high, crossed)
+      if (.not. crossed) return
       call newton(par, eq, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
       found = at%admissible > 0.0_wp
-   end subroutine find_angle
+   end subroutine scan_for_root
 
    !> Newton's method kept inside a bracket (tau without sign, `side` gives it) whose low end has a negative residual
    !> and whose high end a positive one. Leaves w and at evaluated at the angle it returns.
@@ -192,9 +199,9 @@ contains
       ! Always floored (on less than a right angle x cannot become positive between two negative ends), or never near.
       single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp .or. &
                     min(arc%x_t, w%x) > 2.0_wp*par%x_floor
-      ! the preloading bends the residual wherever x changes
-      if (w%preloaded) single_root = max(arc%x_t, w%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
-      if (w%preloaded) return
+      ! an option that bends D and 1/h with x bends the residual wherever x changes
+      if (w%own%bends) single_root = max(arc%x_t, w%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
+      if (w%own%bends) return
       x_q = side*arc%x_q
       if (single_root .or. at%cosine < NOT_FAR .or. at%cosine*x_q < abs(at%sine)*arc%x_t) return
       single_root = w%floored .or. arc%x_t >= par%x_floor
@@ -222,6 +229,8 @@ contains
       integer :: i, j, intervals
 
       crossed = .false.
+      lower = 0.0_wp
+      upper = last
       intervals = POINTS
       if (is_root) intervals = POINTS + 1   ! the known root itself is no crossing
       step = last/intervals
@@ -358,7 +367,7 @@ contains
       d_lode = 0.0_wp
       if (par%lode) d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
       dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
-      if (w%preloaded) dd = dd + s%d_x*dx
+      if (w%own%bends) dd = dd + s%d_x*dx
       dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode
       d_beta = w%k_e*(dh*w%d + w%h_b*dd)
       d_gamma = 2.0_wp/3.0_wp*w%p*w%m_b*d_lode + 2.0_wp*w%g*dh

@@ -4,16 +4,14 @@
 !> equations: the search for roots, the rate, the tangents and the sensitivities take them from here.
 module mud_direction_equation
    use mud_branchless, only: positive, larger, smaller
-   use mud_critical_state, only: lode_slope
    use mud_flow, only: dilatancy
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_preloading, only: preloading_t, preloading_of, preload
+   use mud_options, only: bend_t, bend_of, bend, bend_of_hardening
    use mud_rate, only: moduli_t, rate_t
-   use mud_tensor, only: ddot, deviator, square
    implicit none (type, external)
    private
-   public :: equation_t, equation_of, find_moduli, slopes_t, slopes_at, turn_t, find_turn
+   public :: equation_t, equation_of, find_moduli, slopes_t, slopes_at
 
    real(wp), parameter :: NEGLIGIBLE = 1.0e-12_wp   !< Smaller divisors would only make a cap that never acts [-].
    real(wp), parameter :: NO_LIMIT = 1.0e100_wp     !< A cap that is off.
@@ -27,8 +25,8 @@ module mud_direction_equation
       real(wp) :: x_floor         !< x_0 [-]
       real(wp) :: most_d          !< D r:n of the contraction cap [-]
       real(wp) :: least_h         !< 2/3 p'/(1 - kappa_c) of the softening cap, 0: off [kPa]
-      logical :: preloaded        !< Other processes have left contraction; `preloading` is set then.
-      type(preloading_t) :: preloading
+      logical :: bends            !< An option bends D and 1/h with x; `with_x` is set then.
+      type(bend_t) :: with_x
    end type equation_t
 
    !> Slopes of D by r:n, z:n, its surface, G and K_e, and of 1/h by these (with what D does to the softening cap), by
@@ -36,18 +34,10 @@ module mud_direction_equation
    type :: slopes_t
       real(wp) :: d_r, d_z, d_r_d, d_g, d_k
       real(wp) :: h_r, h_z, h_r_d, h_g, h_k, h_x, h_r_b, h_p, h_b_0
-      !> D by x, and D and 1/h by ln(w/chi') of the preloading; 0 without it.
+      !> D by x, and D and 1/h by ln q/x**2 of an option that bends with q; 0 without it.
       real(wp) :: d_x, d_q, h_q
-      real(wp) :: d_ln, h_ln   !< both by ln of the fluidity's factor, which v of the preloading does not feel
+      real(wp) :: d_ln, h_ln   !< both by ln of the factor with which an option softens, which q does not feel
    end type slopes_t
-
-   !> Turn of the direction n of a rate: the equation's slopes there, and what a change of its terms is divided by.
-   type :: turn_t
-      type(slopes_t) :: slopes
-      real(wp), dimension(6) :: h_n, d_n, gamma_n   !< Derivatives of 1/h, D, gamma by n, [-, -, kPa].
-      real(wp), dimension(4) :: on_t, on_r          !< n, h_n, d_n, gamma_n on t and r.
-      real(wp) :: inverse(3, 3)
-   end type turn_t
 contains
    !> Direction equation of a rate whose state, moduli and choice of the isotropic mechanism are known; units as in
    !> rate_t.
@@ -66,9 +56,8 @@ contains
       eq%x_floor = par%x_floor
       eq%most_d = merge(par%cap_d*eq%two_g/eq%k_e, NO_LIMIT, par%cap_d > 0.0_wp)
       eq%least_h = merge(eq%two_thirds_p/(1.0_wp - par%cap_h), 0.0_wp, par%cap_h > 0.0_wp)
-      eq%preloaded = w%preloaded
-      if (.not. w%preloaded) return
-      eq%preloading = preloading_of(par, w%chi, w%m_d/w%m_b, w%a_0, w%b_0)
+      eq%bends = w%own%bends
+      if (eq%bends) eq%with_x = bend_of(par, w%own, w%m_d/w%m_b, w%a_0, w%b_0)
    end function equation_of
 
    !> D, 1/h, beta and gamma in a direction, and the guards that act there, from r:n, (r - r_in):n, A_d and |r| on both
@@ -81,7 +70,7 @@ contains
 
       d = dilatancy(m%a_d, m%r_d, m%r_n)
       h_b = larger(m%x, eq%x_floor)*eq%per_b_0
-      if (eq%preloaded) call preload(eq%preloading, larger(m%x, eq%x_floor), d, h_b, m%f_chi, m%f_slope)
+      if (eq%bends) call bend(eq%with_x, larger(m%x, eq%x_floor), d, h_b, m%bent, m%bend_slope)
       m%d = smaller(d, eq%most_d/larger(m%r_n, NEGLIGIBLE))
       stiffness = eq%two_g - eq%k_e*m%d*m%r_n
       limit = eq%least_h*positive(m%r_n - m%r_b)/larger(stiffness, NEGLIGIBLE*eq%two_g)
@@ -119,12 +108,12 @@ contains
          s%d_r = -at%a_d
          s%d_r_d = at%a_d
          if (par%fabric .and. at%z_n > 0.0_wp) s%d_z = w%a_0*(at%r_d - at%r_n)
-         if (w%preloaded .and. at%d > 0.0_wp) then
-            f = at%f_chi
+         if (w%own%bends .and. at%d > 0.0_wp) then
+            f = at%bent
             s%d_r = f*s%d_r
             s%d_r_d = f*s%d_r_d
             s%d_z = f*s%d_z
-            s%d_q = at%f_slope*at%d
+            s%d_q = at%bend_slope*at%d
             s%d_x = 2.0_wp*s%d_q*per_x
          end if
       end if
@@ -153,75 +142,10 @@ contains
          s%h_x = merge(0.0_wp, 1.0_wp/w%b_0, at%floored)
          s%h_b_0 = -at%h_b/w%b_0
          s%h_ln = -at%h_b
-         if (w%preloaded) then
-            s%h_q = par%s_chi*at%f_slope*at%h_b
+         if (w%own%bends) then
+            s%h_q = bend_of_hardening(par, at%bend_slope)*at%h_b
             s%h_x = (at%h_b + 2.0_wp*s%h_q)*per_x
          end if
       end if
    end subroutine slopes_at
-
-   !> The turn of the direction of a rate that loads, by the implicit function theorem: gamma n = t y + beta r gives
-   !> gamma dn = y dt + beta dr + t dy - n (dgamma + a) + r (dbeta + b), a = gamma_n:dn, b = beta_n:dn and n:dn = 0,
-   !> three scalar equations for dy, a, b. beta_n = K_e (D h_n + d_n/h). docs/theory/integration.md section 5.2.
-   pure subroutine find_turn(par, w, turn)
-      type(params_t), intent(in) :: par
-      type(rate_t), intent(in) :: w
-      type(turn_t), intent(inout) :: turn
-      real(wp) :: m(3, 3)
-
-      call slopes_at(par, w, w%moduli_t, turn%slopes)
-      call find_gradients(par, w, turn)
-      associate (on_t => turn%on_t, on_r => turn%on_r)
-         on_t = [ddot(w%n, w%t), ddot(turn%h_n, w%t), ddot(turn%d_n, w%t), ddot(turn%gamma_n, w%t)]
-         on_r = [w%r_n, ddot(turn%h_n, w%r), ddot(turn%d_n, w%r), ddot(turn%gamma_n, w%r)]
-         m(1, :) = [on_t(1), -1.0_wp, on_r(1)]
-         m(2, :) = [on_t(4), -w%gamma, on_r(4)]
-         m(3, :) = [w%k_e*(w%d*on_t(2) + w%h_b*on_t(3)), 0.0_wp, w%k_e*(w%d*on_r(2) + w%h_b*on_r(3)) - w%gamma]
-      end associate
-      turn%inverse = inverse_of(m)
-   end subroutine find_turn
-
-   !> Derivatives of 1/h, D and gamma with respect to n, their parts along n removed since n:dn = 0.
-   pure subroutine find_gradients(par, w, turn)
-      type(params_t), intent(in) :: par
-      type(rate_t), intent(in) :: w
-      type(turn_t), intent(inout) :: turn   !< with its slopes
-      real(wp) :: h_n(6), d_n(6), g_n(6)
-
-      associate (s => turn%slopes)
-         d_n = s%d_r*w%r
-         if (w%preloaded) d_n = d_n + s%d_x*w%r_moved
-         h_n = s%h_r*w%r + s%h_x*w%r_moved
-         if (par%fabric) then
-            d_n = d_n + s%d_z*w%z
-            h_n = h_n + s%h_z*w%z
-         end if
-         g_n = 0.0_wp
-         if (par%lode) then
-            g_n = (3.0_wp*lode_slope(par, w%lode)*SQRT_2_3)*deviator(square(w%n))
-            d_n = d_n + (s%d_r_d*w%m_d)*g_n
-            h_n = h_n + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*g_n
-         end if
-      end associate
-      turn%d_n = d_n - ddot(d_n, w%n)*w%n
-      turn%h_n = h_n - ddot(h_n, w%n)*w%n
-      turn%gamma_n = (2.0_wp/3.0_wp*w%p*w%m_b)*(g_n - ddot(g_n, w%n)*w%n) + (2.0_wp*w%g)*turn%h_n
-   end subroutine find_gradients
-
-   !> Inverse of a 3 x 3 matrix by cofactors. That m is regular is not checked.
-   pure function inverse_of(m) result(inverse)
-      real(wp), intent(in) :: m(3, 3)
-      real(wp) :: inverse(3, 3)
-
-      inverse(1, 1) = m(2, 2)*m(3, 3) - m(2, 3)*m(3, 2)
-      inverse(1, 2) = m(1, 3)*m(3, 2) - m(1, 2)*m(3, 3)
-      inverse(1, 3) = m(1, 2)*m(2, 3) - m(1, 3)*m(2, 2)
-      inverse(2, 1) = m(2, 3)*m(3, 1) - m(2, 1)*m(3, 3)
-      inverse(2, 2) = m(1, 1)*m(3, 3) - m(1, 3)*m(3, 1)
-      inverse(2, 3) = m(1, 3)*m(2, 1) - m(1, 1)*m(2, 3)
-      inverse(3, 1) = m(2, 1)*m(3, 2) - m(2, 2)*m(3, 1)
-      inverse(3, 2) = m(1, 2)*m(3, 1) - m(1, 1)*m(3, 2)
-      inverse(3, 3) = m(1, 1)*m(2, 2) - m(1, 2)*m(2, 1)
-      inverse = inverse/(m(1, 1)*inverse(1, 1) + m(1, 2)*inverse(2, 1) + m(1, 3)*inverse(3, 1))
-   end function inverse_of
 end module mud_direction_equation

@@ -2,9 +2,10 @@
 !> Results of one rate: the state as it sees it, the direction with the moduli there, and the rates.
 module mud_rate
    use mud_bonding, only: bonding_t
-   use mud_fluidity, only: fluidity_t
    use mud_hardening, only: isotropic_t
    use mud_kinds, only: wp
+   use mud_options, only: of_options_t
+   use mud_vector, only: N_OPTIONS
    implicit none (type, external)
    private
    public :: moduli_t, rate_t
@@ -16,7 +17,7 @@ module mud_rate
       real(wp) :: r_b, r_d         !< |r| on the bounding and dilatancy surfaces in the direction of n [-]
       real(wp) :: a_d, d           !< A_d, D [-]
       real(wp) :: h_b              !< 1/h [-]
-      real(wp) :: f_chi, f_slope   !< f of the preloading, d ln f/d ln q; not set without it [-]
+      real(wp) :: bent, bend_slope !< factor on D of an option that bends, its slope; not set without [-]
       real(wp) :: beta, gamma      !< coefficients [kPa]
       logical :: floored, capped_d, capped_h   !< guards that act
    end type moduli_t
@@ -32,10 +33,8 @@ module mud_rate
       type(bonding_t) :: bond      !< bonding, none where saturated
       real(wp) :: psi              !< state parameter [-]
       real(wp) :: m_b, m_d         !< M^b, M^d in triaxial compression [-]
-      real(wp) :: a_0, b_0         !< A_0 and h x with the fluidity [-]
-      type(fluidity_t) :: fluid    !< fluidity, none with the option off
-      logical :: preloaded         !< other processes have left contraction (cyclic preloading)
-      real(wp) :: chi              !< chi', that contraction; not set otherwise [-]
+      real(wp) :: a_0, b_0         !< A_0 and h x, softened by options [-]
+      type(of_options_t) :: own    !< effects of the options
       type(isotropic_t) :: iso     !< isotropic mechanism
       ! the direction
       logical :: loading           !< L >= 0 was solved for; false: elastic
@@ -54,7 +53,6 @@ module mud_rate
       real(wp) :: d_sigma(6)       !< [kPa]
       real(wp) :: d_z(6)           !< [-]
       real(wp) :: d_eps_q          !< plastic shear, sqrt(2/3) L [-]
-      real(wp) :: d_log_chi, d_chi_own   !< rates of ln chi', and of chi_o in contraction; 0 without preloading [-]
-      real(wp) :: d_ell            !< rate of the fluidity by shear; 0 with the option off [-]
+      real(wp) :: d_own(N_OPTIONS) !< rates of the numbers of options; 0 where they are off [-]
    end type rate_t
 end module mud_rate

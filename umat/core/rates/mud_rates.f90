@@ -12,11 +12,10 @@ module mud_rates
    use mud_critical_state, only: state_parameter, bounding_ratio, dilatancy_ratio, bounding_norm
    use mud_direction, only: find_direction
    use mud_flow, only: fabric_rate
-   use mud_fluidity, only: NOT_FLUID, fluidity_at, growth
    use mud_hardening, only: kinematic_modulus, isotropic_hardening, shear_weight, NO_HARDENING
-   use mud_preloading, only: NO_CONTRACTION
+   use mud_options, only: look_at_numbers, rates_of_numbers
    use mud_rate, only: rate_t
-   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_LOG_CHI, Y_FLUIDITY
+   use mud_vector, only: NY, Y_Z, Y_Z_END
    implicit none (type, external)
    private
    public :: rate_at, conditions_t, stress_ratio, p_follows, MODE_ORDINARY, MODE_ELASTIC
@@ -75,10 +74,7 @@ contains
       d_e = deviator(d_strain)
       d_norm = norm(d_strain)
       call evaluate_point(par, at, y(1:6), y(Y_Z:Y_Z_END), w)
-      if (par%fluid) call soften(par, y(Y_FLUIDITY), w)
-      w%preloaded = .false.
-      if (par%preloading) w%preloaded = y(Y_LOG_CHI) > NO_CONTRACTION
-      if (w%preloaded) w%chi = exp(y(Y_LOG_CHI))
+      call look_at_numbers(par, y, w%p, w%a_0, w%b_0, w%own)
       if (at%rests) w%iso = NO_HARDENING
 
       call start_direction(near, w)
@@ -105,16 +101,7 @@ contains
       w%d_sigma = 2.0_wp*w%g*(d_e - w%l*w%n) + w%d_p*IDENTITY
       w%d_z = fabric_rate(par, w%l, w%d, w%n, w%z)
       w%d_eps_q = SQRT_2_3*w%l
-      w%d_log_chi = 0.0_wp
-      w%d_chi_own = 0.0_wp
-      w%d_ell = 0.0_wp
-      if (par%fluid) w%d_ell = w%l*growth(par, w%fluid)
-      if (.not. par%preloading) return
-      if (w%d < 0.0_wp) then
-         w%d_log_chi = par%zeta_chi*w%l*w%d
-      else
-         w%d_chi_own = w%l*w%d
-      end if
+      call rates_of_numbers(par, w%l, w%d, w%own, w%d_own)
    end subroutine rate_at
 
    !> The direction of a rate of nearly the same state is where to begin.
@@ -165,7 +152,6 @@ contains
       w%m_d = dilatancy_ratio(par, w%psi)
       w%a_0 = par%a_0
       w%b_0 = kinematic_modulus(par, at%e, w%p)
-      w%fluid = NOT_FLUID
       w%iso = NO_HARDENING
       if (par%isotropic) then
          weight = shear_weight(w%r_norm, bounding_norm(par, w%r, w%r_norm, w%m_b))
@@ -175,17 +161,6 @@ contains
          end if
       end if
    end subroutine evaluate_point
-
-   !> Dilatancy and hardening of soil with a fluidity. docs/theory/material.md section 4.11.
-   pure subroutine soften(par, ell, w)
-      type(params_t), intent(in) :: par
-      real(wp), intent(in) :: ell
-      type(rate_t), intent(inout) :: w
-
-      w%fluid = fluidity_at(par, ell, w%p)
-      w%a_0 = w%fluid%factor*w%a_0
-      w%b_0 = w%fluid%factor*w%b_0
-   end subroutine soften
 
    !> Loading index, direction and rate of p' with or without the isotropic mechanism.
    pure subroutine load(par, d_v, d_e, d_norm, d_pc, mode, active, w)

@@ -2,8 +2,9 @@
 !> Tangent blocks of an update that are not carried through its substeps: elastic, and continuum by the last rate.
 module mud_blocks
    use mud_kinds, only: wp
-   use mud_cutoff, only: held_tangent, soil_void_ratio, MODE_HELD
+   use mud_cutoff, only: soil_void_ratio, MODE_HELD
    use mud_elastic, only: bulk_modulus, centre_modulus, elastic_tangent
+   use mud_held, only: held_tangent
    use mud_increment, only: increment_t, has_elastic_part, direction_at, end_in_domain
    use mud_params, only: params_t
    use mud_rate, only: rate_t

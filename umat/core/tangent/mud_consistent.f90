@@ -5,16 +5,21 @@
 !> those that divide the rest: behind an event all substeps begin later by its shift. In the limit of small substeps
 !> that is the saltation term (f_before - f_after) (x) dt/d increment; docs/theory/integration.md section 5.
 module mud_consistent
+   use mud_integration, only: JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
    use mud_kinds, only: wp
    use mud_loading, only: loading_t
-   use mud_cutoff, only: changes_through_hold, MODE_HELD
+   use mud_loading_changes, only: changes_of_loading_strain
+   use mud_isotropic_memory, only: margins_at_stages
+   use mud_margin_changes, only: changes_of_measure, changes_by_shear
+   use mud_cutoff, only: MODE_HELD
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
-   use mud_isotropic_memory, only: margins_at_stages, changes_of_measure, changes_by_shear
-   use mud_fluidity, only: recovery
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, changes_of_loading_strain, live_numbers
-   use mud_inside_domain, only: changes_inside
+   use mud_fading, only: fading_t, NO_FADING, begin_fading, change_of_left, add_changes_of_faded
+   use mud_held, only: changes_through_hold
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_inside_changes, only: changes_inside
+   use mud_options, only: live_numbers, add_volume_changes, past_changes_t, no_past_changes, begin_past_changes, &
+      jump_of_past
    use mud_params, only: params_t
-   use mud_preloading, only: NO_CONTRACTION
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows, MODE_ORDINARY
    use mud_registry, only: RULE_THRESHOLD, RULE_REPOSITIONING, MAX_INTERRUPTED
@@ -24,42 +29,34 @@ module mud_consistent
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
    use mud_tensor, only: IDENTITY, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
-   use mud_transient, only: fading_t, NO_FADING, without_turn, half_way, begin_fading, change_of_left, &
-      add_changes_of_faded
+   use mud_transient, only: without_turn, half_way
    use mud_trial, only: trial_t
    use mud_linearise, only: linearised_t, linearise, changes_t
-   use mud_vector, only: NY, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_vector, only: NY, Y_SHEAR
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, changes_of_contraction, jump_of_memory, &
+   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, &
              changes_of_parting, change_with_size, changes_at_memory, changes_along, changes_of_ratio, &
-             linearise_stage, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
-
-   integer, parameter :: JUMP_NONE = 0
-   integer, parameter :: JUMP_REVERSAL = 1   !< A new process begins.
-   integer, parameter :: JUMP_RETURN = 2     !< An interrupted process goes on.
-   integer, parameter :: JUMP_NEW = 3        !< The point leaves the tension cut-off: no past.
+             linearise_stage
 
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
       logical :: at_rest                     !< the state does not depend on the increment yet: y, r_in, shift are zero
-      !> Derivatives of sigma', z, the plastic shear of the present process, ln chi', contraction within a substep, and
-      !> fluidity.
+      !> Derivatives of sigma', z, the plastic shear of the present process, and the numbers of options.
       real(wp) :: y(DIRECTIONS, NY)
       type(tensors_t) :: r_in                !< derivatives of the memory
       real(wp) :: r_before(DIRECTIONS, 6)    !< derivatives of the memory of the process before
       real(wp) :: shift(DIRECTIONS)          !< derivatives of the pseudo-time where the next substep begins
+      real(wp) :: end_shift(DIRECTIONS)      !< derivatives of the pseudo-time where the phase ends
+      real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
       !> Derivatives of the memories of interrupted processes; those up to number `settled` were there when the
       !> increment began.
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
-      !> Derivatives of the contraction of the present process and of ln chi' where the substep began, with cyclic
-      !> preloading.
-      real(wp) :: chi_own(DIRECTIONS), log_chi0(DIRECTIONS)
+      type(past_changes_t) :: past           !< derivatives of what the memory says for options
       !> Derivatives of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts.
       real(wp) :: margin(DIRECTIONS)
       real(wp) :: parts(DIRECTIONS)          !< derivatives of the void ratio at which the grains of a held point part
-      real(wp) :: stretch(DIRECTIONS)        !< derivatives of the length of the phase, over that length
       type(driving_t) :: driving
       type(fading_t) :: fading               !< derivatives of what fades of the rates, where that is known
    end type sensitivity_t
@@ -76,7 +73,7 @@ contains
       sens%r_in%of = 0.0_wp
       sens%r_in%kind = ZERO_TENSORS
       sens%r_before = 0.0_wp
-      sens%chi_own = 0.0_wp
+      call no_past_changes(sens%past)
       sens%shift = 0.0_wp
       sens%parts = 0.0_wp
       sens%margin = 0.0_wp
@@ -90,25 +87,24 @@ contains
       real(wp), intent(in) :: end_shift(DIRECTIONS)
       type(sensitivity_t), intent(inout) :: sens
 
+      sens%end_shift = end_shift
       sens%stretch = (end_shift - sens%shift)/(inc%to - inc%from)
    end subroutine begin_stretch
 
-   !> Carries the derivatives through an accepted substep h, the last one of a phase or not. The end of a phase has a
-   !> pseudo-time that changes by end_shift. h and end_shift are shares of inc [-]. docs/theory/integration.md section
-   !> 5.3.
-   pure subroutine propagate(par, inc, trial, h, last, end_shift, sens)
+   !> Carries the derivatives through an accepted substep h, a share of inc [-], the last one of a phase or not.
+   !> docs/theory/integration.md section 5.3.
+   pure subroutine propagate(par, inc, trial, h, last, sens)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h, end_shift(DIRECTIONS)
+      real(wp), intent(in) :: h
       logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dh(DIRECTIONS), rates(DIRECTIONS, NY, MAX_STAGES)
 
-      sens%log_chi0 = sens%y(:, Y_LOG_CHI)
-      sens%y(:, Y_CONTRACTION) = 0.0_wp
+      call begin_past_changes(sens%y, sens%past)
       if (trial%divides .or. last) then
-         dh = (h/(inc%to - trial%time))*(end_shift - sens%shift)
+         dh = (h/(inc%to - trial%time))*(sens%end_shift - sens%shift)
       else
          dh = h*sens%stretch
       end if
@@ -131,43 +127,6 @@ contains
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
    end subroutine propagate
-
-   !> Derivatives of what an accepted substep leaves of the contraction of the present process, whose share was chi_own.
-   !> Derivative of note_contraction of mud_reversal.
-   pure subroutine changes_of_contraction(trial, chi_own, sens)
-      type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: chi_own   !< before it [-]
-      type(sensitivity_t), intent(inout) :: sens
-
-      if (trial%mode == MODE_HELD) return
-      sens%chi_own = exp(min(trial%y(Y_LOG_CHI) - trial%y0(Y_LOG_CHI), 0.0_wp)) &
-                     *(sens%chi_own + chi_own*(sens%y(:, Y_LOG_CHI) - sens%log_chi0)) + sens%y(:, Y_CONTRACTION)
-   end subroutine changes_of_contraction
-
-   !> Derivatives of the contraction across a jump of the memory from `before` to `after`. A process that is interrupted
-   !> and resumed within the increment resumes with what it had then: nearly always it began before the increment.
-   pure subroutine jump_of_contraction(jump, before, after, sens)
-      integer, intent(in) :: jump
-      type(memory_t), intent(in) :: before, after
-      type(sensitivity_t), intent(inout) :: sens
-      real(wp) :: all(DIRECTIONS), others
-
-      others = before%chi - before%chi_own
-      all = sens%chi_own + others*sens%y(:, Y_LOG_CHI)
-      select case (jump)
-      case (JUMP_REVERSAL)
-         sens%chi_own = 0.0_wp
-      case (JUMP_RETURN)
-         sens%chi_own = 0.0_wp
-         if (before%interrupted(after%depth + 1)%chi >= before%chi) sens%chi_own = all
-      case default
-         sens%chi_own = 0.0_wp
-         all = 0.0_wp
-      end select
-      sens%y(:, Y_LOG_CHI) = 0.0_wp
-      others = after%chi - after%chi_own
-      if (others > exp(NO_CONTRACTION)) sens%y(:, Y_LOG_CHI) = (all - sens%chi_own)/others
-   end subroutine jump_of_contraction
 
    !> Derivative of the end of a substep with respect to its size. Per unit of h, a share of inc; [kPa, -, -] for
    !> sigma', z and plastic shear. docs/theory/integration.md section 4.3.
@@ -389,9 +348,7 @@ contains
       if (at_rest) rests = are_zero(changes)
       call changes_of_rate(par, w, lin, rests, y, r_in, driving%d_strain, driving%from_centre, &
                            changes, stress_only, rates)
-      if (par%fluid .and. inc%d_v > 0.0_wp .and. .not. stress_only) &
-         rates(:, Y_FLUIDITY) = rates(:, Y_FLUIDITY) - recovery(par, inc%d_v)*y(:, Y_FLUIDITY) &
-                                - (par%r_ell*point(Y_FLUIDITY))*driving%d_v
+      if (.not. stress_only) call add_volume_changes(par, inc%d_v, point, y, driving%d_v, rates)
    end subroutine change_of_stage
 
    !> True where void ratio and suction do not change.
@@ -432,18 +389,17 @@ contains
                                      changes%loading)
    end subroutine changes_along
 
-   !> Changes of the void ratio at which the grains of a point part that has no gap: where that is its void ratio e, it
+   !> Changes of the void ratio at which the grains of a point part that has no gap: where that is its void ratio, it
    !> changes with it. docs/theory/material.md section 6.4.
-   pure subroutine changes_of_parting(inc, trial, e, sens)
+   pure subroutine changes_of_parting(inc, trial, sens)
       type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial     !< begins to be held
-      real(wp), intent(in) :: e              !< [-]
+      type(trial_t), intent(in) :: trial     !< held
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dp_c(DIRECTIONS)
 
       sens%parts = 0.0_wp
-      if (e < trial%parts) return
-      call change_of_place(inc, trial%time, e, sens%shift, sens%driving, sens%parts, dp_c)
+      if (trial%e < trial%parts) return
+      call change_of_place(inc, trial%time, trial%e, sens%shift, sens%driving, sens%parts, dp_c)
    end subroutine changes_of_parting
 
    !> Changes of the stress ratio with the stress. sigma and y(:, 1:6) [kPa], dr [-]. Where p' is held at p_min its
@@ -478,7 +434,7 @@ contains
 
       sens%at_rest = .false.
       sens%r_in%kind = ANY_TENSORS
-      if (par%preloading) call jump_of_contraction(jump, before, after, sens)
+      call jump_of_past(par, jump == JUMP_REVERSAL, jump == JUMP_RETURN, before, after, sens%y, sens%past)
       if (jump == JUMP_RETURN) then
          ! of the two memories the softer one was taken
          if (any(abs(after%r_in - before%r_in) > 0.0_wp)) then

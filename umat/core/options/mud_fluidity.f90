@@ -7,9 +7,14 @@
 module mud_fluidity
    use mud_kinds, only: wp
    use mud_params, only: params_t
+   use mud_tensor, only: LANES
+   use mud_vector, only: NY, Y_OPTIONS
    implicit none (type, external)
    private
-   public :: fluidity_t, NOT_FLUID, fluidity_at, growth, growth_slopes, recovery
+   public :: fluidity_t, Y_FLUIDITY, fluidity_at, growth, growth_changes, recovery, recovered, recovered_changes, &
+             recovery_changes
+
+   integer, parameter :: Y_FLUIDITY = Y_OPTIONS + 2   !< fluidity [-]
 
    !> Fluidity of a point and its factors in a rate.
    type :: fluidity_t
@@ -19,8 +24,6 @@ module mud_fluidity
       real(wp) :: by_p, by_ell   !< d ln factor/dp' and /d ell [1/kPa, -]
       real(wp) :: weight_by_p    !< dw/dp' [1/kPa]
    end type fluidity_t
-   !> The option off, or p' above its range.
-   type(fluidity_t), parameter :: NOT_FLUID = fluidity_t(0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 contains
    !> Fluidity, its weight and factors with their slopes, of ell >= 0 [-] at p' > 0 [kPa], not checked.
    !> docs/theory/material.md section 4.11.
@@ -47,14 +50,16 @@ contains
       growth = par%c_ell*fluidity%weight*(1.0_wp - fluidity%ell/par%ell_max)
    end function growth
 
-   !> Slopes of the growth of the fluidity by p' and by the fluidity [1/kPa, -].
-   pure function growth_slopes(par, fluidity) result(slopes)
+   !> Changes of the rate of growth L times growth, with L, p' [kPa] and the integrated vector.
+   pure function growth_changes(par, fluidity, l, dl, dp, y) result(changes)
       type(params_t), intent(in) :: par
       type(fluidity_t), intent(in) :: fluidity
-      real(wp) :: slopes(2)
+      real(wp), intent(in) :: l, dl(LANES), dp(LANES), y(LANES, NY)
+      real(wp) :: changes(LANES), slopes(2)
 
       slopes = par%c_ell*[fluidity%weight_by_p*(1.0_wp - fluidity%ell/par%ell_max), -fluidity%weight/par%ell_max]
-   end function growth_slopes
+      changes = growth(par, fluidity)*dl + l*(slopes(1)*dp + slopes(2)*y(:, Y_FLUIDITY))
+   end function growth_changes
 
    !> Share of the fluidity that a volumetric strain rate takes away, per unit of time; 0 where the volume grows [-].
    !> docs/theory/material.md section 4.11.
@@ -64,4 +69,33 @@ contains
 
       recovery = par%r_ell*max(d_v, 0.0_wp)
    end function recovery
+
+   !> Changes of the rate at which a volumetric strain rate d_v takes fluidity away, of ell, with the integrated vector
+   !> and d_v.
+   pure function recovery_changes(par, d_v, ell, y, dv) result(changes)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: d_v, ell, y(LANES, NY), dv(LANES)
+      real(wp) :: changes(LANES)
+
+      changes = 0.0_wp
+      if (d_v > 0.0_wp) changes = recovery(par, d_v)*y(:, Y_FLUIDITY) + (par%r_ell*ell)*dv
+   end function recovery_changes
+
+   !> Fluidity that is left after a share h of a volumetric strain d_v without shear [-].
+   pure real(wp) function recovered(par, d_v, h, ell)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: d_v, h, ell
+
+      recovered = ell*exp(-h*recovery(par, d_v))
+   end function recovered
+
+   !> Changes of that with the integrated vector, with h and d_v [-].
+   pure function recovered_changes(par, d_v, h, ell, y, dh, dv) result(changes)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: d_v, h, ell, y(LANES, NY), dh(LANES), dv(LANES)
+      real(wp) :: changes(LANES)
+
+      changes = exp(-h*recovery(par, d_v))*(y(:, Y_FLUIDITY) - (ell*recovery(par, d_v))*dh)
+      if (d_v > 0.0_wp) changes = changes - (ell*h*par%r_ell*exp(-h*recovery(par, d_v)))*dv
+   end function recovered_changes
 end module mud_fluidity

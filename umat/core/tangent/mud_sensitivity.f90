@@ -16,9 +16,9 @@ module mud_sensitivity
    use mud_tensor, only: LANES, tensors_t, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: loading_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
-   use mud_fluidity, only: growth, growth_slopes
    use mud_hardening, only: KINEMATIC_EXPONENT
-   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_LOG_CHI, Y_CONTRACTION, Y_FLUIDITY
+   use mud_options, only: has_numbers, changes_of_numbers, softens, changes_of_softening, changes_of_bend
+   use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
    public :: changes_of_rate, changes_of_drive, changes_of_iso_drive
@@ -31,7 +31,7 @@ contains
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       logical, intent(in) :: at_rest                  !< y, r_in and the changes of e and p_c are zero
-      !> Changes of sigma', z, ln chi', fluidity and, without effect, plastic shear and contraction [kPa, -, -].
+      !> Changes of sigma', z, the numbers of options and, without effect, plastic shear [kPa, -, -].
       real(wp), intent(in) :: y(LANES, NY)
       type(tensors_t), intent(in) :: r_in             !< changes of the memory [-]
       type(tensors_t), intent(in) :: strain, centre   !< changes of strain rate and elastic domain [-]
@@ -59,18 +59,7 @@ contains
       rates(:, Y_Z:) = 0.0_wp
       if (w%loading .and. .not. stress_only) then
          rates(:, Y_SHEAR) = SQRT_2_3*x%dl
-         if (par%preloading) then
-            if (w%d < 0.0_wp) then
-               rates(:, Y_LOG_CHI) = par%zeta_chi*x%flow
-            else
-               rates(:, Y_CONTRACTION) = x%flow
-            end if
-         end if
-         if (par%fluid) then
-            associate (slopes => growth_slopes(par, w%fluid))
-               rates(:, Y_FLUIDITY) = growth(par, w%fluid)*x%dl + w%l*(slopes(1)*x%p + slopes(2)*y(:, Y_FLUIDITY))
-            end associate
-         end if
+         if (has_numbers(par)) call changes_of_numbers(par, w%l, w%d, w%own, x%dl, x%flow, x%p, y, rates)
          if (par%fabric .and. w%d < 0.0_wp) then
             call fill_fabric(par, w, y, strain, centre, changes, x, rates(:, Y_Z:Y_Z_END))
          end if
@@ -155,15 +144,15 @@ contains
             x%dh = x%dh + s%h_z*n_dz
          end if
          if (s%h_x > 0.0_wp .and. r_in%kind /= ZERO_TENSORS) x%dh = x%dh - s%h_x*contracted(r_in, w%n)
-         if (par%fluid) then
-            q = w%fluid%by_p*x%p + w%fluid%by_ell*y(:, Y_FLUIDITY)
+         if (softens(par)) then
+            q = changes_of_softening(w%own, x%p, y)
             x%dd = x%dd + s%d_ln*q
             x%dh = x%dh + s%h_ln*q
          end if
-         if (w%preloaded) then
-            ! of ln(w/chi') with M^d/M^b, b_0 and chi'
-            q = (dilatancy_slope(par, w%m_d)/w%m_d)*x%psi - x%m_b/w%m_b - KINEMATIC_EXPONENT*x%share &
-                - lin%b_slope*changes%e - y(:, Y_LOG_CHI)
+         if (w%own%bends) then
+            ! with M^d/M^b, b_0 and the numbers
+            q = changes_of_bend((dilatancy_slope(par, w%m_d)/w%m_d)*x%psi - x%m_b/w%m_b - KINEMATIC_EXPONENT*x%share &
+                                - lin%b_slope*changes%e, y)
             x%dd = x%dd + s%d_q*q + s%d_x*x%n_dr
             x%dh = x%dh + s%h_q*q
             if (r_in%kind /= ZERO_TENSORS) x%dd = x%dd - s%d_x*contracted(r_in, w%n)

@@ -7,7 +7,6 @@ module mud_linearise
    use mud_params, only: params_t
    use mud_bonding, only: suction_law_t, bonding_curvature, bonding_with_turn
    use mud_critical_state, only: state_parameter_slopes, bounding_slope, lode_gradient
-   use mud_direction_equation, only: turn_t, find_turn
    use mud_elastic, only: bulk_slope, shear_slope, swelling_slope, centre_modulus, changed_centre_modulus, &
       BULK_EXPONENT, SHEAR_EXPONENT
    use mud_loading, only: loading_t
@@ -16,6 +15,7 @@ module mud_linearise
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
    use mud_tensor, only: LANES, contractions, trace
+   use mud_turn, only: turn_t, find_turn
    use mud_vector, only: NY
    implicit none (type, external)
    private

@@ -3,12 +3,12 @@
 !> docs/theory/integration.md section 5.2. The state rests: as a sum of dyads it costs half of what the derivative of
 !> mud_sensitivity would.
 module mud_tangent
-   use mud_direction_equation, only: turn_t, find_turn
    use mud_elastic, only: add_elastic
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_tensor, only: IDENTITY, ddot, outer_sum
+   use mud_turn, only: turn_t, find_turn
    implicit none (type, external)
    private
    public :: continuum_tangent

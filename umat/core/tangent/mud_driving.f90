@@ -2,14 +2,15 @@
 !> Derivatives of what drives an increment - strain, volume, suction - along the directions of the consistent tangent,
 !> and of the pseudo-times at which its phases end.
 module mud_driving
+   use mud_branches, only: slopes_of_suction
    use mud_kinds, only: wp
-   use mud_elastic_domain, only: changes_of_exit
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_tensor, only: DIRECTIONS => LANES, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions
+   use mud_turning, only: changes_of_exit
    implicit none (type, external)
    private
    public :: driving_t, whole_increment, change_of_place, change_of_zero_suction, change_of_turn, change_of_passing, &
-             slopes_of_suction, DIRECTIONS, AT_REST
+             DIRECTIONS, AT_REST
 
    !> Derivatives of what drives the increment along six engineering strains and the suction at the end of the
    !> increment, side by side. The eighth direction is idle: along it nothing changes.
@@ -91,17 +92,6 @@ contains
                - omega*p_c*inc%d_v*(1.0_wp + e)/e**2*time*driving%d_v
       change = -change/slope
    end function change_of_turn
-
-   !> Derivatives of ln x, x the modified suction p_c e^Omega, by suction [1/kPa] and volume [-]. Suction is positive
-   !> there, which is not checked. docs/theory/material.md section 2.1.1.
-   pure function slopes_of_suction(inc, time, omega) result(slopes)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, omega
-      real(wp) :: slopes(2), e
-
-      e = void_ratio_at(inc, time)
-      slopes = [1.0_wp/suction_at(inc, time), -omega*(1.0_wp + e)/e]
-   end function slopes_of_suction
 
    !> Changes of the pseudo-time at which ln x passes a turning point [-]. x moves there, which is not checked.
    !> docs/theory/material.md section 2.1.1.

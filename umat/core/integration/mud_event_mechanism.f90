@@ -1,0 +1,57 @@
+! SPDX-License-Identifier: MIT
+!> Event: the isotropic mechanism begins or ends to act while suction changes; docs/theory/material.md section 4.4.
+module mud_event_mechanism
+   use mud_event, only: event_t, event_changes_t, RATE_THERE, BEFORE, BY_MECHANISM, ORDINARY, EXACT, EXACT_TRIALS, &
+      SHARP_KINK, switches
+   use mud_increment, only: increment_t
+   use mud_kinds, only: wp
+   use mud_params, only: params_t
+   use mud_rate, only: rate_t
+   use mud_tensor, only: LANES
+   use mud_trial, only: trial_t
+   implicit none (type, external)
+   private
+   public :: MECHANISM, mechanism_may_switch, mechanism_function, slopes_of_mechanism
+
+   type(event_t), parameter :: MECHANISM = &
+      event_t(ORDINARY, RATE_THERE, BEFORE, .true., BY_MECHANISM, EXACT, EXACT_TRIALS)
+contains
+   !> True of a substep with an error that a kink may have made, and a kink [-].
+   pure logical function mechanism_may_switch(par, inc, trial, error)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      real(wp), intent(in) :: error
+
+      mechanism_may_switch = error > SHARP_KINK*par%tolerance
+      if (mechanism_may_switch) mechanism_may_switch = mechanism_switches(inc, trial)
+   end function mechanism_may_switch
+
+   !> True where the isotropic mechanism begins or ends to act inside the substep. Its rates have a kink there, which is
+   !> sharp while suction changes: a substep across it has an error that depends on where in it the kink lies, and
+   !> Newton's method in a host sees that as noise.
+   pure logical function mechanism_switches(inc, trial)
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+
+      mechanism_switches = inc%suction%bonds .and. abs(inc%d_pc) > 0.0_wp
+      if (mechanism_switches) &
+         mechanism_switches = switches(trial%w(1)%iso_drive, trial%w(inc%scheme%stages)%iso_drive)
+   end function mechanism_switches
+
+   !> Drive of the mechanism over that at the start [-].
+   pure real(wp) function mechanism_function(trial, w)
+      type(trial_t), intent(in) :: trial
+      type(rate_t), intent(in) :: w
+
+      mechanism_function = w%iso_drive/trial%w(1)%iso_drive
+   end function mechanism_function
+
+   !> Changes of the drive [-].
+   pure function slopes_of_mechanism(c) result(slopes)
+      type(event_changes_t), intent(in) :: c
+      real(wp) :: slopes(LANES)
+
+      slopes = c%mechanism
+   end function slopes_of_mechanism
+end module mud_event_mechanism
