@@ -96,10 +96,18 @@ class Run:
     def histories(self):
         return self.table("histories")
 
-    def counted(self, word):
-        """Iterations, or cuts, of the whole run, as its closing line says."""
-        found = re.search(rf"(\d+) {word}[,;]", self.told.split("evaluations")[0].rsplit("\n", 1)[-1])
-        return int(found[1]) if found else 0
+    @property
+    def iterations(self):
+        """Of all accepted steps; 0: none was."""
+        return int(sum(self.ledger["iterations"])) if (self.folder / "ledger.csv").exists() else 0
+
+    @property
+    def cuts(self):
+        """Of the stages that came to their end: a line of each counts those so far."""
+        found = re.findall(r"(\d+) cuts? so far", self.told)
+        if self.code == 0 and not found:
+            raise ValueError(f"{self.folder}: no line counts the cuts of a run that came to its end")
+        return int(found[-1]) if found else 0
 
     def sentence(self):
         """The last line of a run that was refused or ended early."""
@@ -168,8 +176,8 @@ def evaluate(case, setting, folder, nudge=True):
             a, b = case.answer({label: runs[label] for label in other}), case.answer(other)
             continuity = 100 * max(abs(x - y) / max(abs(x), 1e-300) for x, y in zip(a, b))
     good = done and value <= case.allowed and not continuity > CONTINUITY
-    return HostOutcome(case.name, setting.name, done, value, case.allowed, continuity, sum(r.counted("iterations") for r in runs.values()),
-                       sum(r.counted("cuts") for r in runs.values()), good, ended(stopped[0].sentence()) if stopped else "", runs)
+    return HostOutcome(case.name, setting.name, done, value, case.allowed, continuity, sum(r.iterations for r in runs.values()),
+                       sum(r.cuts for r in runs.values()), good, ended(stopped[0].sentence()) if stopped else "", runs)
 
 
 def temporary():
