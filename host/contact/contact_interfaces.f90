@@ -8,8 +8,8 @@ module contact_interfaces
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
                               contact_evaluate, points_of, slid_work
-   use contact_plate, only: plate_motion_t, plate_response_t, new_plate_response, plate_positions, gather_on_plate, &
-                            force_on_plate
+   use contact_plate, only: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
+   use plate_motion, only: plate_motion_t, plate_positions
    use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
    use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, &
                             CONTACT_OK

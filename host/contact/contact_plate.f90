@@ -1,21 +1,16 @@
 ! SPDX-License-Identifier: MIT
-!> A rigid plate as the master: its face follows the unknowns of its motion, and forces and tangent on its face are
-!> gathered on them. docs/theory/contact.md section 4.
+!> A rigid plate as the master: forces and tangent on its face are gathered on the unknowns of its motion.
+!> docs/theory/contact.md section 4.
 module contact_plate
    use kinds, only: wp
    use contact_geometry, only: contact_geometry_t
    use contact_penalty, only: contact_result_t
+   use plate_motion, only: plate_motion_t
    implicit none (type, external)
    private
-   public :: plate_motion_t, plate_response_t, new_plate_response, plate_positions, gather_on_plate, force_on_plate
+   public :: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
-
-   !> Motion of a plate: vertical, by one unknown. Types that extend it have more, of which the first is that one.
-   type :: plate_motion_t
-   contains
-      procedure :: displacements, slopes, bending
-   end type plate_motion_t
 
    !> Forces and tangent over the unknowns 2 (node - 1) + direction of the slave's nodes, then those of the plate.
    type :: plate_response_t
@@ -28,39 +23,6 @@ module contact_plate
       real(wp), allocatable, private :: right(:, :), below(:, :)   !< The plate's columns and rows.
    end type plate_response_t
 contains
-   !> Displacements of the nodes of the face. docs/theory/contact.md section 4.
-   pure function displacements(self, x0, q) result(u)
-      class(plate_motion_t), intent(in) :: self
-      real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
-      real(wp), intent(in) :: q(:)       !< (unknowns of the motion) [m]
-      real(wp) :: u(2, size(x0, 2))
-
-      u(1, :) = 0.0_wp
-      u(2, :) = q(1)
-   end function displacements
-
-   !> Slopes of the coordinates 2 (node - 1) + direction of the face against the unknowns of the motion [-].
-   pure function slopes(self, x0, q)
-      class(plate_motion_t), intent(in) :: self
-      real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
-      real(wp), intent(in) :: q(:)       !< (unknowns of the motion) [m]
-      real(wp) :: slopes(size(q), 2*size(x0, 2))
-
-      slopes = 0.0_wp
-      slopes(1, 2::2) = 1.0_wp
-   end function slopes
-
-   !> Tangent of forces on the face by slopes that change with the motion [kN/m].
-   pure function bending(self, x0, q, force)
-      class(plate_motion_t), intent(in) :: self
-      real(wp), intent(in) :: x0(:, :)    !< (2, nodes) undisplaced [m]
-      real(wp), intent(in) :: q(:)        !< (unknowns of the motion) [m]
-      real(wp), intent(in) :: force(:)    !< On the coordinates of the face [kN].
-      real(wp) :: bending(size(q), size(q))
-
-      bending = 0.0_wp
-   end function bending
-
    !> Room for the forces and the tangent of a plate with `own` unknowns, sized for the slave of a geometry.
    pure function new_plate_response(geometry, own) result(plate)
       type(contact_geometry_t), intent(in) :: geometry
@@ -74,16 +36,6 @@ contains
       allocate (plate%row(FIRST_ROOM), plate%column(FIRST_ROOM), source=0)
       allocate (plate%value(FIRST_ROOM), source=0.0_wp)
    end function new_plate_response
-
-   !> Nodes of the face where the plate has moved to. docs/theory/contact.md section 4.
-   pure function plate_positions(motion, x0, q) result(x)
-      class(plate_motion_t), intent(in) :: motion
-      real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
-      real(wp), intent(in) :: q(:)       !< (unknowns of the motion) [m]
-      real(wp) :: x(2, size(x0, 2))
-
-      x = x0 + motion%displacements(x0, q)
-   end function plate_positions
 
    !> Slope of the energy against the unknowns of the plate: minus the forces that contact exerts on it [kN].
    !> docs/theory/contact.md section 4.

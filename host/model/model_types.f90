@@ -8,10 +8,10 @@
 !> do nothing.
 module model_types
    use archive, only: archive_t
-   use contact_plate, only: plate_motion_t
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
    use kinds, only: wp
+   use plate_motion, only: plate_motion_t
    use porous_domain, only: domain_t
    use scene_parts, only: scene_item_t, amplitude_t, stage_t, initial_values_t, fix_values_t, load_values_t, &
                           plate_values_t, contact_values_t, named_point_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH

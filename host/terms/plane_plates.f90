@@ -4,7 +4,6 @@
 !> docs/theory/host.md section 7.3, contact.md section 4.
 module plane_plates
    use boundary_builder, only: add_body
-   use contact_plate, only: plate_motion_t
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_schema, only: UNBOUNDED
@@ -12,6 +11,7 @@ module plane_plates
    use kinds, only: wp
    use model_types, only: model_t, plate_t, coordinate_t
    use namelists, only: group_t
+   use plate_motion, only: plate_motion_t
    use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t, groups_named
