@@ -8,13 +8,13 @@ module contact_interfaces
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
                               contact_evaluate, points_of, slid_work
-   use contact_plate, only: plate_motion_t, plate_response_t, new_plate_response, plate_displacements, &
-                            plate_positions, plate_slopes, gather_on_plate, force_on_plate
+   use contact_plate, only: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
+   use plate_motion, only: plate_motion_t, plate_positions
    use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
    use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, &
                             CONTACT_OK
-   use degrees_of_freedom, only: dofs_t, unknowns_of_body
-   use unknown_fields, only: AT_U_Z, DISPLACEMENTS
+   use degrees_of_freedom, only: dofs_t
+   use unknown_fields, only: DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, place_of
    use surface_forces, only: surface_forces_t
    implicit none (type, external)
@@ -34,9 +34,8 @@ module contact_interfaces
 
    !> A plate in the unknowns.
    type :: plate_link_t
-      integer :: node = 0   !< Node that carries the displacements; 0: there is no plate.
-      integer :: turn = 0   !< Node whose u_z is the lever times the angle, of a plate that turns.
-      type(plate_motion_t) :: motion
+      class(plate_motion_t), allocatable :: motion    !< Not allocated: there is no plate.
+      integer, allocatable :: field(:), node(:)       !< Fields and nodes that the unknowns of its motion are at.
    end type plate_link_t
 
    !> The interface of two surfaces that may come into contact, or of a boundary with the plate that it is tied to.
@@ -144,10 +143,10 @@ contains
          one%slave_u = 0*slave%x0
          one%master_u = 0*master%x0
       end if
-      if (plate%node > 0) call link(dofs, one)
+      if (allocated(plate%motion)) call link(dofs, one)
    end subroutine new_interface
 
-   !> Ties a boundary to a plate that turns: docs/theory/contact.md section 4.
+   !> Ties a boundary to a plate by springs: docs/theory/contact.md section 4.
    subroutine tie_to_plate(dofs, boundary, plate, penalty, one)
       type(dofs_t), intent(in) :: dofs
       type(surface_t), intent(in) :: boundary
@@ -171,26 +170,22 @@ contains
    subroutine link(dofs, one)
       type(dofs_t), intent(in) :: dofs
       type(contact_interface_t), intent(inout) :: one
+      integer :: k
 
-      one%on_plate = new_plate_response(one%geometry, one%plate%motion)
-      if (one%plate%motion%turns) then
-         one%unknown = [one%unknown, unknowns_of_body(dofs, one%plate%node, one%plate%turn)]
-      else
-         one%unknown = [one%unknown, dofs%of(AT_U_Z, one%plate%node)]
-      end if
+      associate (plate => one%plate)
+         one%on_plate = new_plate_response(one%geometry, size(plate%node))
+         one%unknown = [one%unknown, (dofs%of(plate%field(k), plate%node(k)), k=1, size(plate%node))]
+      end associate
    end subroutine link
 
    !> Unknowns of a plate at given displacements, as of plate_positions [m].
    pure function motion_of(plate, x) result(q)
       type(plate_link_t), intent(in) :: plate
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
-      real(wp), allocatable :: q(:)
+      real(wp) :: q(size(plate%node))
+      integer :: k
 
-      if (plate%motion%turns) then
-         q = [x(:DISPLACEMENTS, plate%node), x(AT_U_Z, plate%turn)]
-      else
-         q = [x(AT_U_Z, plate%node)]
-      end if
+      q = [(x(plate%field(k), plate%node(k)), k=1, size(q))]
    end function motion_of
 
    subroutine act(self, acts)
@@ -222,8 +217,8 @@ contains
             call probe_one(t, x, with_slopes, t%result, self%status)
             good = self%status%code == CONTACT_OK
             if (.not. good) return
-            if (t%plate%node > 0) call gather_on_plate(t%geometry, t%result, t%plate%motion, t%master%x0, &
-                                                       motion_of(t%plate, x), t%on_plate)
+            if (allocated(t%plate%motion)) call gather_on_plate(t%geometry, t%result, t%plate%motion, &
+                                                                 t%master%x0, motion_of(t%plate, x), t%on_plate)
             t%active = count(t%result%active)
             t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
             t%energy = t%result%energy
@@ -293,8 +288,8 @@ contains
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       real(wp) :: u(DISPLACEMENTS, size(t%master%x0, 2))
 
-      if (t%plate%node > 0) then
-         u = plate_displacements(t%plate%motion, t%master%x0, motion_of(t%plate, x))
+      if (allocated(t%plate%motion)) then
+         u = t%plate%motion%displacements(t%master%x0, motion_of(t%plate, x))
       else
          u = x(:DISPLACEMENTS, t%master%node)
       end if
@@ -396,7 +391,7 @@ contains
       type(friction_t), intent(in), optional :: friction
       real(wp) :: at(2, size(master%x0, 2))
 
-      if (plate%node > 0) then
+      if (allocated(plate%motion)) then
          at = plate_positions(plate%motion, master%x0, motion_of(plate, x))
       else
          at = master%x0 + x(:DISPLACEMENTS, master%node)
@@ -416,7 +411,7 @@ contains
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
-            if (t%plate%node > 0) then
+            if (allocated(t%plate%motion)) then
                call list(t%on_plate%row(:t%on_plate%triplets), t%on_plate%column(:t%on_plate%triplets))
             else
                call list(t%result%row(:t%result%triplets), t%result%column(:t%result%triplets))
@@ -458,7 +453,7 @@ contains
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
-            if (t%plate%node > 0) then
+            if (allocated(t%plate%motion)) then
                call add_one(t%unknown, t%on_plate%force, t%on_plate%size, t%on_plate%row(:t%on_plate%triplets), &
                             t%on_plate%column, t%on_plate%value)
             else
@@ -533,11 +528,11 @@ contains
          do c = 1, size(self%interfaces)
             associate (t => self%interfaces(c))
                if (.not. t%acts) cycle
-               if (t%plate%node > 0) then
+               if (allocated(t%plate%motion)) then
                   n = 2*t%geometry%slave_nodes
                   call gather(t%unknown(:n), t%probe%force(:n))
                   call gather(t%unknown(n + 1:), force_on_plate(t%geometry, t%probe, &
-                     plate_slopes(t%plate%motion, t%master%x0, motion_of(t%plate, x))))
+                     t%plate%motion%slopes(t%master%x0, motion_of(t%plate, x))))
                else
                   call gather(t%unknown, t%probe%force)
                end if

@@ -7,7 +7,7 @@ module degrees_of_freedom
    use porous_domain, only: domain_t
    implicit none (type, external)
    private
-   public :: dofs_t, number_unknowns, unknowns_of_body, tie, tie_pairs
+   public :: dofs_t, number_unknowns, tie, tie_pairs
 
    type :: dofs_t
       integer :: n = 0                        !< Unknowns.
@@ -81,16 +81,6 @@ contains
          end associate
       end do
    end subroutine number_unknowns
-
-   !> Unknowns of a rigid body that moves in the plane: u_r, u_z and the rotation, which is the u_z of a node of its
-   !> own.
-   pure function unknowns_of_body(dofs, node, turn) result(unknowns)
-      type(dofs_t), intent(in) :: dofs
-      integer, intent(in) :: node, turn   !< Nodes of the displacements and of the rotation.
-      integer :: unknowns(DISPLACEMENTS + 1)
-
-      unknowns = [dofs%of(:DISPLACEMENTS, node), dofs%of(AT_U_Z, turn)]
-   end function unknowns_of_body
 
    !> Makes nodes share one unknown of a field.
    pure subroutine tie(nodes, field, ties)

@@ -4,7 +4,8 @@ module boundary_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
-   use model_types, only: model_t, action_t, gravity_at, initial_t, fix_t, load_t, plate_t, contact_pair_t, tie_t
+   use model_types, only: model_t, action_t, gravity_at, initial_t, fix_t, load_t, plate_t, &
+                          coordinate_t, contact_pair_t, tie_t
    use name_search, only: mesh_group, defined_name
    use scene_parts, only: initial_values_t, acts_in, place_of, LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, &
                           LOAD_FORCE_R
@@ -14,10 +15,9 @@ module boundary_builder
    use unknown_fields, only: FIELD_NAMES, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: build_plates, build_boundaries
+   public :: build_plates, build_boundaries, add_body
 
    character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
-   character(*), parameter :: TURN = '.turn'   !< Ends the group of a rotation.
 contains
    !> Plates come first: those with a face of their own become nodes of the mesh, and all become groups of it.
    !> docs/theory/host.md section 7.3. Fault EXIT_GROUP: the name is that of a group of the mesh, the boundary or
@@ -75,76 +75,39 @@ contains
       plate%amplitude = amplitude_of(given%amplitude_name, place_of(plate), model, fault)
       if (fault%code /= 0) return
       associate (mesh => model%domain%mesh)
-         if (find_group(mesh, trim(plate%name)) > 0 .or. find_group(mesh, trim(plate%name)//TURN) > 0) then
+         if (find_group(mesh, trim(plate%name)) > 0) then
             call raise(fault, EXIT_GROUP, place_of(plate)//'the mesh has a group '''//trim(plate%name)// &
                        ''' already; give the plate another name.')
             return
          end if
          if (given%joined_name /= '') plate%group = mesh_group(mesh, given%joined_name, place_of(plate), fault)
          if (fault%code /= 0) return
-         if (plate%turns) then
-            call build_body(model, plate, fault)
-         else if (plate%group == 0) then
-            call add_body(model, trim(plate%name), plate%corners(:, 1), plate%node)
+         if (plate%group == 0) then
+            call add_body(model, plate%corners(:, 1), plate%node, trim(plate%name))
          else
             plate%node = mesh%groups(plate%group)%nodes(1)
             call add_group(mesh, trim(plate%name), [integer ::], none, mesh%groups(plate%group)%nodes)
          end if
       end associate
+      allocate (plate%motion)
+      plate%coordinates = [coordinate_t(node=plate%node, mass=plate%mass, load=plate%force)]
    end subroutine build_plate
 
-   !> A plate that moves in the plane has two nodes: one with its displacements, one with its rotation.
-   subroutine build_body(model, plate, fault)
+   !> A node of its own, and a group of it, if it is to have a name.
+   subroutine add_body(model, x, node, name)
       type(model_t), intent(inout) :: model
-      type(plate_t), intent(inout) :: plate
-      type(fault_t), intent(inout) :: fault
-      real(wp), allocatable :: touched(:, :)
-
-      if (plate%group == 0) then
-         touched = plate%corners
-      else
-         associate (group => model%domain%mesh%groups(plate%group))
-            if (size(group%edges, 2) == 0) then
-               call raise(fault, EXIT_GROUP, place_of(plate)//'group '''//trim(group%name)//''' has no edges that '// &
-                          'could move with the plate; name a boundary.')
-               return
-            end if
-            touched = model%domain%mesh%x(:, group%nodes)
-         end associate
-      end if
-      plate%lever = maxval(norm2(touched - spread(plate%center, 2, size(touched, 2)), dim=1))
-      call add_body(model, trim(plate%name), plate%center, plate%node)
-      call add_body(model, trim(plate%name)//TURN, plate%center, plate%turn_node)
-      plate%turn_group = size(model%domain%mesh%groups)
-      model%domain%bodies_along_r = [model%domain%bodies_along_r, plate%node]
-   end subroutine build_body
-
-   !> A node of its own, and a group of it.
-   subroutine add_body(model, name, x, node)
-      type(model_t), intent(inout) :: model
-      character(*), intent(in) :: name
       real(wp), intent(in) :: x(2)   !< [m]
       integer, intent(out) :: node
+      character(*), intent(in), optional :: name
       integer :: none(3, 0)
 
       associate (mesh => model%domain%mesh)
          mesh%x = reshape([mesh%x, x], [2, size(mesh%x, 2) + 1])
          node = size(mesh%x, 2)
-         call add_group(mesh, name, [integer ::], none, [node])
+         if (present(name)) call add_group(mesh, name, [integer ::], none, [node])
       end associate
       model%domain%bodies = [model%domain%bodies, node]
    end subroutine add_body
-
-   !> The plate whose rotation a scene names, 0 with a fault if there is none. Fault EXIT_INPUT.
-   integer function turning_plate(model, name, place, fault) result(plate)
-      type(model_t), intent(in) :: model
-      character(*), intent(in) :: name, place
-      type(fault_t), intent(inout) :: fault
-
-      plate = findloc(model%plates%turns .and. model%plates%name == name, .true., dim=1)
-      if (plate == 0) call raise(fault, EXIT_INPUT, place//'a rotation and a moment are those of a &plate with '// &
-                                 'motion = ''plane'', and '''//trim(name)//''' is none.')
-   end function turning_plate
 
    !> Initial conditions, supports, loads, contacts and ties of a scene; a fault names what cannot
    !> be resolved. Fault EXIT_GROUP: a group or history does not exist, or a group lacks the edges or nodes that are
@@ -243,18 +206,9 @@ contains
       type(model_t), intent(in) :: model
       type(fix_t), intent(inout) :: fix
       type(fault_t), intent(inout) :: fault
-      integer :: plate
 
       fix%fix_values_t = given%fix_values_t
-      if (fix%turns) then
-         plate = turning_plate(model, fix%group_name, place_of(fix), fault)
-         if (fault%code /= 0) return
-         fix%group = model%plates(plate)%turn_group
-         fix%value = fix%value*model%plates(plate)%lever
-         fix%value_slope = fix%value_slope*model%plates(plate)%lever
-      else
-         fix%group = mesh_group(model%domain%mesh, fix%group_name, place_of(fix), fault)
-      end if
+      fix%group = mesh_group(model%domain%mesh, fix%group_name, place_of(fix), fault)
       if (fault%code == 0) fix%amplitude = amplitude_of(given%amplitude_name, place_of(fix), model, fault)
       if (fault%code /= 0) return
       if (fix%acceleration .and. (fix%field >= AT_P_W .or. fix%hold .or. fix%amplitude == 0)) then
@@ -272,18 +226,9 @@ contains
       type(model_t), intent(in) :: model
       type(load_t), intent(inout) :: load
       type(fault_t), intent(inout) :: fault
-      integer :: plate
 
       load%load_values_t = given%load_values_t
-      if (load%turns) then
-         plate = turning_plate(model, load%group_name, place_of(load), fault)
-         if (fault%code /= 0) return
-         load%group = model%plates(plate)%turn_group
-         load%value = load%value/model%plates(plate)%lever
-         load%value_slope = load%value_slope/model%plates(plate)%lever
-      else
-         load%group = mesh_group(model%domain%mesh, load%group_name, place_of(load), fault)
-      end if
+      load%group = mesh_group(model%domain%mesh, load%group_name, place_of(load), fault)
       if (fault%code == 0) load%amplitude = amplitude_of(given%amplitude_name, place_of(load), model, fault)
       if (fault%code /= 0) return
       if (load%kind < LOAD_FORCE_R .and. size(model%domain%mesh%groups(load%group)%edges, 2) == 0) then

@@ -2,14 +2,14 @@
 !> What a step prescribes: displacements, pore pressures and air pressures at its end, and the masses of plates.
 module boundary_conditions
    use kinds, only: wp
-   use degrees_of_freedom, only: dofs_t, unknowns_of_body
+   use degrees_of_freedom, only: dofs_t
    use generalised_alpha, only: scheme_t, has_rates
    use limited_pressures, only: begin_sides
-   use model_types, only: model_t, factor_at, fix_t
+   use model_types, only: model_t, factor_at, fix_t, unknowns_of
    use porous_domain, only: model_state_t
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: acts_in, stage_t, PRESCRIBED_P_A
-   use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C, DISPLACEMENTS
+   use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: new_constraint, constrain_step, complete_constraint, acts, value_of, follow_accelerations, &
@@ -26,26 +26,18 @@ contains
 
       nodes = size(model%domain%mesh%x, 2)
       allocate (constraint%fixed(dofs%n), constraint%limited(dofs%n), source=.false.)
-      allocate (constraint%limited_by(dofs%n), constraint%releases(dofs%n), source=0)
+      allocate (constraint%limited_by(dofs%n), constraint%releases(dofs%n), constraint%body(dofs%n), source=0)
       allocate (constraint%air(nodes), source=.false.)
       allocate (constraint%target(dofs%n), constraint%load_0(dofs%n), constraint%load_1(dofs%n), &
                 constraint%rain_0(dofs%n), constraint%rain_1(dofs%n), constraint%offset(dofs%n), &
                 constraint%mass(dofs%n), source=0.0_wp)
       allocate (constraint%air_target(nodes), source=0.0_wp)
-      allocate (constraint%bodies(3, 0), constraint%added(0))
+      allocate (constraint%added(0))
       do i = 1, size(model%plates)
-         associate (plate => model%plates(i))
-            if (plate%turns) then
-               associate (at => unknowns_of_body(dofs, plate%node, plate%turn_node))
-                  constraint%mass(at) = [plate%mass, plate%mass, plate%inertia/plate%lever**2]
-                  constraint%bodies = reshape([constraint%bodies, at], [size(at), size(constraint%bodies, 2) + 1])
-               end associate
-            else
-               ! Plates whose boundaries a &tie joins have one unknown.
-               associate (at => dofs%of(AT_U_Z, plate%node))
-                  constraint%mass(at) = constraint%mass(at) + plate%mass
-               end associate
-            end if
+         ! Plates whose boundaries a &tie joins have one unknown.
+         associate (of => model%plates(i)%coordinates, at => unknowns_of(model%plates(i), dofs))
+            constraint%mass(at) = constraint%mass(at) + of%mass/of%unit**2
+            constraint%body(at) = i
          end associate
       end do
    end function new_constraint

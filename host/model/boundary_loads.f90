@@ -2,10 +2,9 @@
 !> Load vectors at a moment, of the loads and plates of a stage.
 module boundary_loads
    use kinds, only: wp
-   use model_types, only: model_t, factor_at, gravity_at, load_t, plate_t
+   use model_types, only: model_t, factor_at, gravity_at, load_t, plate_t, unknowns_of
    use scene_parts, only: acts_in, stage_t
-   use unknown_fields, only: AT_U_Z
-   use degrees_of_freedom, only: dofs_t, unknowns_of_body
+   use degrees_of_freedom, only: dofs_t
    implicit none (type, external)
    private
    public :: load_at, force_of, plate_loads
@@ -18,7 +17,6 @@ contains
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: time   !< [s]
       real(wp), allocatable :: load(:)
-      real(wp) :: loads(3)
       integer :: i
 
       allocate (load(dofs%n), source=0.0_wp)
@@ -29,16 +27,9 @@ contains
       end do
       do i = 1, size(model%plates)
          associate (one => model%plates(i))
-            loads = plate_loads(model, one, time)
-            if (one%turns) then
-               associate (at => unknowns_of_body(dofs, one%node, one%turn_node))
-                  load(at) = load(at) + [loads(:2), loads(3)/one%lever]
-               end associate
-            else
-               associate (at => dofs%of(AT_U_Z, one%node))
-                  load(at) = load(at) + loads(2)
-               end associate
-            end if
+            associate (at => unknowns_of(one, dofs))
+               load(at) = load(at) + plate_loads(model, one, time)/one%coordinates%unit
+            end associate
          end associate
       end do
    end function load_at
@@ -53,15 +44,15 @@ contains
       if (allocated(load%rise)) force = force + factor*load%value_slope*load%rise
    end function force_of
 
-   !> Forces on a plate along r and upwards, its weight among them [kN], and the moment from r to z [kN m].
-   !> docs/theory/host.md section 7.3.
+   !> Loads on the coordinates of a plate, its weight among them: first the force upwards [kN]. docs/theory/host.md
+   !> section 7.3.
    pure function plate_loads(model, plate, time) result(loads)
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate
       real(wp), intent(in) :: time   !< [s]
-      real(wp) :: loads(3)
+      real(wp) :: loads(size(plate%coordinates))
 
-      loads = factor_at(model, plate%amplitude, time)*[plate%force_r, plate%force, plate%moment]
-      if (plate%heavy) loads(2) = loads(2) - plate%mass*gravity_at(model, time)
+      loads = factor_at(model, plate%amplitude, time)*plate%coordinates%load
+      if (plate%heavy) loads(1) = loads(1) - plate%mass*gravity_at(model, time)
    end function plate_loads
 end module boundary_loads

@@ -10,7 +10,6 @@ module contact_setup
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
    use contact_interfaces, only: contacts_t, surface_t, plate_link_t, surface_of, new_interface, tie_to_plate, &
                                  plate_surface
-   use contact_plate, only: plate_motion_t
    use porous_domain, only: model_state_t
    use faults, only: fault_t, raise, EXIT_INPUT
    implicit none (type, external)
@@ -52,7 +51,7 @@ contains
                return
             end associate
          end do
-         ! Behind the contacts, what is tied to a plate that turns.
+         ! Behind the contacts, what springs tie to a plate.
          do i = 1, size(model%plates)
             associate (plate => model%plates(i))
                if (.not. is_tied(plate)) cycle
@@ -65,18 +64,21 @@ contains
       call move_alloc(built, contacts)
    end subroutine prepare_contacts
 
-   !> Whether a boundary is tied to a plate by springs: where the plate turns.
+   !> Whether springs tie a boundary to a plate.
    elemental logical function is_tied(plate)
       type(plate_t), intent(in) :: plate
 
-      is_tied = plate%turns .and. plate%group > 0
+      is_tied = plate%penalty > 0.0_wp
    end function is_tied
 
    !> A plate as contacts know it.
-   pure type(plate_link_t) function link_of(plate) result(link)
+   type(plate_link_t) function link_of(plate) result(link)
       type(plate_t), intent(in) :: plate
 
-      link = plate_link_t(plate%node, plate%turn_node, plate_motion_t(plate%turns, plate%center, plate%lever))
+      allocate (link%motion, source=plate%motion)
+      allocate (link%field(size(plate%coordinates)), link%node(size(plate%coordinates)))
+      link%field(:) = plate%coordinates%field
+      link%node(:) = plate%coordinates%node
    end function link_of
 
    !> A heavy plate starts where the penalty alone carries what acts on it downwards: so it is held from the first
@@ -84,14 +86,15 @@ contains
    subroutine place_heavy_plates(model, state)
       type(model_t), intent(in) :: model
       type(model_state_t), intent(inout) :: state
-      real(wp) :: area, load, loads(3)
+      real(wp) :: area, load
+      real(wp), allocatable :: loads(:)
       integer :: i
 
       do i = 1, size(model%contacts)
          if (model%contacts(i)%plate == 0) cycle
          associate (plate => model%plates(model%contacts(i)%plate))
             loads = plate_loads(model, plate, state%time)
-            load = -loads(2)
+            load = -loads(1)
             if (.not. plate%heavy .or. load <= 0.0_wp) cycle
             area = area_below(plate%corners)
             if (area <= 0.0_wp) cycle

@@ -68,10 +68,10 @@ contains
          associate (plate => model%plates(i))
             if (plate%group > 0) cycle
             fixed = is_fixed(model, stage, AT_U_Z, plate%node)
-            if (plate%turns .or. .not. fixed) on_contact = on_contact//'; contact alone holds the plate '''// &
-                                                           trim(plate%name)//''''
+            if (size(plate%coordinates) > 1 .or. .not. fixed) on_contact = on_contact//'; contact alone holds the '// &
+                                                                           'plate '''//trim(plate%name)//''''
             if (free /= '') cycle
-            if (plate%turns .and. .not. holds_along_r(model, stage, i)) then
+            if (any(plate%coordinates%field == AT_U_R) .and. .not. holds_along_r(model, stage, i)) then
                free = 'the plate '''//trim(plate%name)//''' against moving along r (x): no &contact of it that '// &
                       'acts has friction; give one friction, or a &fix of u_r with the plate as its group.'
             else if (.not. (touched(plate%node) .or. fixed)) then
@@ -120,9 +120,9 @@ contains
             associate (plate => model%plates(i))
                if (plate%group == 0) cycle
                call join(mesh%groups(plate%group)%nodes)
-               if (.not. plate%turns) cycle
-               body([plate%node, plate%turn_node]) = [plate%node, plate%turn_node]
-               call join([mesh%groups(plate%group)%nodes(1), plate%node, plate%turn_node])
+               if (.not. plate%penalty > 0.0_wp) cycle
+               body(plate%coordinates%node) = plate%coordinates%node
+               call join([mesh%groups(plate%group)%nodes(1), plate%coordinates%node])
             end associate
          end do
       end associate
@@ -210,8 +210,8 @@ contains
                do k = 1, size(groups(fix%group)%nodes)
                   associate (node => groups(fix%group)%nodes(k), field => fix%field)
                      if (.not. mine(node)) cycle
-                     turn_held = turn_held .or. fix%turns
-                     if (fix%turns) cycle
+                     turn_held = turn_held .or. fix%of_body
+                     if (fix%of_body) cycle
                      low(field) = min(low(field), x(3 - field, node))
                      high(field) = max(high(field), x(3 - field, node))
                   end associate
@@ -226,8 +226,8 @@ contains
             end do
          end do
          do i = 1, size(model%plates)
-            ! What is tied to a plate that turns moves as any rigid body does.
-            if (model%plates(i)%group == 0 .or. model%plates(i)%turns) cycle
+            ! What springs tie to a plate moves as any rigid body does.
+            if (model%plates(i)%group == 0 .or. model%plates(i)%penalty > 0.0_wp) cycle
             associate (nodes => groups(model%plates(i)%group)%nodes)
                if (mine(nodes(1))) turn_held = turn_held .or. any(abs(x(1, nodes) - x(1, nodes(1))) > near)
             end associate

@@ -13,7 +13,7 @@ module load_shapes
    private
    public :: shape_loads, ties_of
 contains
-   !> Nodes that plates make move together: those of the boundaries that they are joined to. And those of &tie. (FIELDS,
+   !> Nodes that plates make move together: those of the boundaries that share their u_z. And those of &tie. (FIELDS,
    !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
    function ties_of(model) result(ties)
       type(model_t), intent(in) :: model
@@ -22,7 +22,7 @@ contains
 
       allocate (ties(FIELDS, size(model%domain%mesh%x, 2)), source=0)
       do i = 1, size(model%plates)
-         if (model%plates(i)%group > 0 .and. .not. model%plates(i)%turns) &
+         if (model%plates(i)%group > 0 .and. .not. model%plates(i)%penalty > 0.0_wp) &
             call tie(model%domain%mesh%groups(model%plates(i)%group)%nodes, AT_U_Z, ties)
       end do
       do i = 1, size(model%ties)

@@ -11,15 +11,17 @@ module model_types
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
    use kinds, only: wp
+   use plate_motion, only: plate_motion_t
    use porous_domain, only: domain_t
    use scene_parts, only: scene_item_t, amplitude_t, stage_t, initial_values_t, fix_values_t, load_values_t, &
                           plate_values_t, contact_values_t, named_point_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH
    use solution, only: solution_t
    use texts, only: LENGTH
+   use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
-   public :: model_t, term_t, term_box_t, factor_at, gravity_at
-   public :: action_t, initial_t, fix_t, load_t, plate_t, contact_pair_t, tie_t, point_t, solver_t
+   public :: model_t, term_t, term_box_t, factor_at, gravity_at, unknowns_of
+   public :: action_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, solver_t
 
    real(wp), parameter :: ALWAYS = -huge(1.0_wp)
 
@@ -51,11 +53,21 @@ module model_types
       real(wp), allocatable :: rise(:)               !< Load vector of the value z - datum, where it changes with z.
    end type load_t
 
+   !> A coordinate of a rigid plate: its unknown, what acts on it, and its names in tables.
+   type :: coordinate_t
+      integer :: field = AT_U_Z, node = 0            !< Field and node that its unknown is at.
+      integer :: group = 0                           !< Of the mesh, that it has of its own; 0: that of the plate.
+      real(wp) :: unit = 1.0_wp                      !< The unknown where the coordinate is 1.
+      real(wp) :: mass = 0.0_wp, load = 0.0_wp       !< [Mg, or Mg m2], and at a factor of 1 [kN, or kN m].
+      character(8) :: names(4) = ['u_z ', 'v_z ', 'a_z ', 'load']   !< Of it, its rates and its load.
+   end type coordinate_t
+
    type, extends(plate_values_t) :: plate_t
       integer :: group = 0, amplitude = 0            !< Boundary that moves with it, 0: it has a face of its own.
-      integer :: node = 0                            !< It carries the plate's motion: its own, or of the boundary.
-      integer :: turn_node = 0, turn_group = 0       !< Its u_z is the lever times the angle, of a plate that turns.
-      real(wp) :: lever = 1.0_wp                     !< Largest distance of what it touches from its centre [m].
+      integer :: node = 0                            !< It carries the plate's u_z: its own, or of the boundary.
+      real(wp) :: penalty = 0.0_wp                   !< Springs that tie the boundary to it [kN/m3]; 0: they share u_z.
+      class(plate_motion_t), allocatable :: motion
+      type(coordinate_t), allocatable :: coordinates(:)   !< Of the motion; the first is u_z.
    end type plate_t
 
    type, extends(contact_values_t) :: contact_pair_t
@@ -129,6 +141,15 @@ module model_types
       class(term_t), allocatable :: term
    end type term_box_t
 contains
+   !> Unknowns of the coordinates of a plate.
+   pure function unknowns_of(plate, dofs) result(unknowns)
+      type(plate_t), intent(in) :: plate
+      type(dofs_t), intent(in) :: dofs
+      integer :: unknowns(size(plate%coordinates)), k
+
+      unknowns = [(dofs%of(plate%coordinates(k)%field, plate%coordinates(k)%node), k=1, size(unknowns))]
+   end function unknowns_of
+
    !> Factor of an amplitude at a time; amplitude 0 is 1 throughout. [-]
    pure real(wp) function factor_at(model, amplitude, time) result(factor)
       type(model_t), intent(in) :: model

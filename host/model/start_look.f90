@@ -241,7 +241,7 @@ contains
       real(wp) :: r(2), area, forces(2)
       integer :: i
 
-      if (plate%turns) return
+      if (size(plate%coordinates) > 1) return
       if (plate%group > 0) then
          associate (x => model%domain%mesh%x(1, model%domain%mesh%groups(plate%group)%nodes))
             r = [minval(x), maxval(x)]

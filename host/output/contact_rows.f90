@@ -9,7 +9,6 @@ module contact_rows
    use model_types, only: model_t, plate_t
    use porous_domain, only: model_state_t
    use surface_forces, only: surface_forces_t
-   use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
    private
    public :: contact_columns, contact_row, contact_nodes
@@ -19,7 +18,7 @@ contains
       type(model_t), intent(in) :: model
       character(:), allocatable :: head
       character(1 + len(model%contacts%name)) :: name
-      integer :: i
+      integer :: i, k, n
 
       head = 'time,dt,work'
       do i = 1, size(model%contacts)
@@ -29,17 +28,19 @@ contains
       end do
       do i = 1, size(model%plates)
          name = ','//model%plates(i)%name
-         head = head//trim(name)//'.u_z'//trim(name)//'.v_z'//trim(name)//'.a_z'//trim(name)//'.load'
-         if (model%plates(i)%turns) head = head//trim(name)//'.u_r'//trim(name)//'.v_r'//trim(name)//'.a_r'// &
-            trim(name)//'.load_r'//trim(name)//'.turn'//trim(name)//'.v_turn'//trim(name)//'.a_turn'//trim(name)// &
-            '.moment'
+         do k = 1, size(model%plates(i)%coordinates)
+            associate (names => model%plates(i)%coordinates(k)%names)
+               do n = 1, size(names)
+                  head = head//trim(name)//'.'//trim(names(n))
+               end do
+            end associate
+         end do
       end do
    end function contact_columns
 
    !> Row of contact.csv: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
-   !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every plate u_z [m], v_z
-   !> [m/s], a_z [m/s2], load [kN], and of one that moves in the plane the same along r and of its rotation, from r to
-   !> z: angle [-], [1/s], [1/s2], moment [kN m].
+   !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every coordinate of a plate
+   !> its value [m], rate [m/s], acceleration [m/s2] and load [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
    function contact_row(model, contacts, dt, state, work) result(row)
       type(model_t), intent(in) :: model
       class(surface_forces_t), allocatable, intent(in) :: contacts
@@ -59,22 +60,16 @@ contains
    contains
       pure function of_plate(plate) result(list)
          type(plate_t), intent(in) :: plate
-         real(wp) :: list(merge(12, 4, plate%turns)), loads(3)
+         real(wp) :: list(4*size(plate%coordinates)), loads(size(plate%coordinates))
+         integer :: k
 
          loads = plate_loads(model, plate, state%time)
-         list(:4) = [moves(AT_U_Z, plate%node), loads(2)]
-         if (.not. plate%turns) return
-         list(5:8) = [moves(AT_U_R, plate%node), loads(1)]
-         list(9:) = [moves(AT_U_Z, plate%turn_node)/plate%lever, loads(3)]
+         do k = 1, size(loads)
+            associate (of => plate%coordinates(k), f => plate%coordinates(k)%field, node => plate%coordinates(k)%node)
+               list(4*k - 3:4*k) = [[state%x(f, node), state%v(f, node), state%a(f, node)]/of%unit, loads(k)]
+            end associate
+         end do
       end function of_plate
-
-      !> Displacement, velocity and acceleration of an unknown.
-      pure function moves(field, node) result(list)
-         integer, intent(in) :: field, node
-         real(wp) :: list(3)
-
-         list = [state%x(field, node), state%v(field, node), state%a(field, node)]
-      end function moves
 
       pure function values(t) result(list)
          type(contact_interface_t), intent(in) :: t

@@ -16,12 +16,10 @@ module reaction_rows
    private
    public :: reaction_columns, reaction_row
 
-   integer, parameter :: SUFFIXES = 11
+   integer, parameter :: SUFFIXES = 9
    character(10), parameter :: SUFFIX(SUFFIXES) = [character(10) :: 'force_r', 'force_z', 'outflow_w', 'outflow_a', &
-                                                   'load_r', 'load_z', 'inflow_w', 'inflow_a', 'at_limit', &
-                                                   'moment', 'load_turn']
+                                                   'load_r', 'load_z', 'inflow_w', 'inflow_a', 'at_limit']
    integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8, LIMIT = 9
-   integer, parameter :: MOMENT = 10, LOAD_TURN = 11   !< On plates that turn [kN m].
 contains
    !> Columns of a stage's table; empty where the stage prescribes and loads nothing. docs/theory/host.md section 9.1.
    function reaction_columns(model, stage) result(head)
@@ -35,18 +33,25 @@ contains
       head = ''
       if (size(list, 2) > 0) head = 'time,time_of_forces'
       do i = 1, size(list, 2)
-         head = head//','//quoted(trim(name_of(list(1, i)))//'.'//trim(SUFFIX(list(2, i))))
+         head = head//','//quoted(name_of(list(1, i), list(2, i)))
       end do
    contains
-      !> Name of a group, or of the plate that it turns.
-      function name_of(group) result(name)
-         integer, intent(in) :: group
+      !> A group and what is told of it; the group of a coordinate by its plate and its load.
+      function name_of(group, kind) result(name)
+         integer, intent(in) :: group, kind
          character(:), allocatable :: name
-         integer :: plate
+         integer :: i, k
 
-         name = model%domain%mesh%groups(group)%name
-         plate = findloc(model%plates%turn_group, group, dim=1)
-         if (plate > 0) name = model%plates(plate)%name
+         name = trim(model%domain%mesh%groups(group)%name)//'.'//trim(SUFFIX(kind))
+         do i = 1, size(model%plates)
+            do k = 1, size(model%plates(i)%coordinates)
+               associate (one => model%plates(i)%coordinates(k))
+                  if (one%group /= group) cycle
+                  name = trim(model%plates(i)%name)//'.'//trim(one%names(4))
+                  if (kind == LOAD_Z) name = trim(model%plates(i)%name)//'.load_'//trim(one%names(1))
+               end associate
+            end do
+         end do
       end function name_of
    end function reaction_columns
 
@@ -61,9 +66,7 @@ contains
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
             if (.not. acts_in(fix%stages, stage%name)) cycle
-            if (fix%turns) then
-               call add(fix%group, MOMENT)
-            else if (fix%field <= DISPLACEMENTS) then
+            if (fix%field <= DISPLACEMENTS) then
                call add(fix%group, fix%field)
             else
                call add(fix%group, OUT_W)
@@ -75,8 +78,8 @@ contains
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
             if (.not. acts_in(load%stages, stage%name)) cycle
-            if (load%turns) then
-               call add(load%group, LOAD_TURN)
+            if (load%of_body) then
+               call add(load%group, LOAD_Z)
                cycle
             end if
             select case (load%kind)
@@ -116,7 +119,7 @@ contains
       type(scheme_t) :: scheme
       integer, allocatable :: list(:, :)
       real(wp), allocatable :: sums(:, :)
-      integer :: i
+      integer :: i, k
 
       scheme = make_scheme(stage%kind, stage%rho_inf, dt)
       call list_columns(model, stage, list)
@@ -124,9 +127,11 @@ contains
       call add_reactions()
       call add_loads()
       do i = 1, size(model%plates)
-         if (.not. model%plates(i)%turns) cycle
-         sums([MOMENT, LOAD_TURN], model%plates(i)%turn_group) = model%plates(i)%lever &
-            *sums([AT_U_Z, LOAD_Z], model%plates(i)%turn_group)
+         do k = 1, size(model%plates(i)%coordinates)
+            associate (one => model%plates(i)%coordinates(k))
+               if (one%group > 0) sums(:, one%group) = one%unit*sums(:, one%group)
+            end associate
+         end do
       end do
       row = [time, time - (1 - scheme%l_f)*dt, picked()]
    contains

@@ -6,12 +6,12 @@ module start_balance
    use kinds, only: wp
    use boundary_loads, only: force_of, plate_loads
    use start_findings, only: balance_t
-   use model_types, only: model_t, factor_at, load_t
+   use model_types, only: model_t, factor_at, load_t, unknowns_of
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
    use run_state, only: run_t, act_contacts
    use scene_parts, only: acts_in, LOAD_PRESSURE
-   use unknown_fields, only: DISPLACEMENTS, AT_U_Z, AT_P_W
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
    public :: find_imbalance
@@ -147,7 +147,7 @@ contains
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: touched(:)     !< (unknowns) Of contacts [kN].
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
-      real(wp) :: load(size(forces)), loads(3)
+      real(wp) :: load(size(forces))
       integer :: i
 
       call carry(touched)
@@ -159,10 +159,9 @@ contains
       end do
       do i = 1, size(model%plates)
          associate (one => model%plates(i))
-            if (one%turns .or. one%group == 0) cycle
-            loads = plate_loads(model, one, 0.0_wp)
+            if (one%penalty > 0.0_wp .or. one%group == 0) cycle
             load = 0.0_wp
-            load(model%dofs%of(AT_U_Z, one%node)) = loads(2)
+            load(unknowns_of(one, model%dofs)) = plate_loads(model, one, 0.0_wp)
             call carry(load)
          end associate
       end do

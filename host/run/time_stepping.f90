@@ -138,8 +138,7 @@ contains
       run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(model%domain%bodies)) = 0.0_wp
       run%state%x(:DISPLACEMENTS, :) = run%state%x(:DISPLACEMENTS, :) + stretched
       do i = 1, size(model%plates)
-         if (model%plates(i)%turns .and. model%plates(i)%group > 0) &
-            run%state%x(:DISPLACEMENTS, [model%plates(i)%node, model%plates(i)%turn_node]) = 0.0_wp
+         if (model%plates(i)%penalty > 0.0_wp) run%state%x(:DISPLACEMENTS, model%plates(i)%coordinates%node) = 0.0_wp
       end do
       run%state%v = 0.0_wp
       run%state%a = 0.0_wp

@@ -16,22 +16,22 @@ module scene_parts
    public :: scene_item_t, amplitude_t, stage_t
    public :: initial_values_t, fix_values_t, load_values_t, plate_values_t, contact_values_t, named_point_t
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
-   public :: PRESCRIBED_P_A, PRESCRIBED_TURN
+   public :: PRESCRIBED_P_A, PRESCRIBED_OF_BODY
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
-             LOAD_MOMENT
+             LOAD_OF_BODY
 
    integer, parameter :: NAME_LENGTH = 64         !< Longest name that a scene gives.
    integer, parameter :: FINGERPRINT_LENGTH = 16
 
    ! Numbers of words, in the order in which scene_keys lists those of the key (a test holds the two together).
    integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< &fix field, after those of unknown_fields: air pressure.
-   integer, parameter :: PRESCRIBED_TURN = FIELDS + 2  !< &fix field: rotation of a plate; read as u_z.
+   integer, parameter :: PRESCRIBED_OF_BODY = FIELDS + 2  !< &fix field: coordinate of a plate alone; read as u_z.
    integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
    integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< &load kind: along the axes [kPa].
    integer, parameter :: LOAD_WATER = 4, LOAD_AIR = 6         !< &load kind: inflow [m/s].
    integer, parameter :: LOAD_RAIN = 5        !< &load kind: inflow until the surface ponds [m/s].
    integer, parameter :: LOAD_FORCE_R = 7, LOAD_FORCE_Z = 8   !< &load kind: on every node of a group [kN].
-   integer, parameter :: LOAD_MOMENT = 9      !< &load kind: on a plate that turns; read as LOAD_FORCE_Z [kN m].
+   integer, parameter :: LOAD_OF_BODY = 9     !< &load kind: on a coordinate of a plate alone; LOAD_FORCE_Z.
    real(wp), parameter :: NEVER = huge(1.0_wp)
 
    !> Where a group of the scene begins, for sentences about it.
@@ -83,7 +83,7 @@ module scene_parts
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp, from = -NEVER, until = NEVER
       logical :: hold = .false., acceleration = .false.
       logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
-      logical :: turns = .false.                     !< Of a plate its rotation, the value an angle.
+      logical :: of_body = .false.                   !< The value is that of a coordinate of a plate alone.
       character(LENGTH), allocatable :: stages(:)
    end type fix_values_t
 
@@ -91,21 +91,17 @@ module scene_parts
       character(LENGTH) :: group_name = ''
       integer :: kind = 0                            !< LOAD_...
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
-      logical :: turns = .false.                     !< A moment on a plate.
+      logical :: of_body = .false.                   !< It acts on a coordinate of a plate alone.
       character(LENGTH), allocatable :: stages(:)
    end type load_values_t
 
    !> A rigid plate: one with a face of its own that presses through a contact, or one that is joined to a boundary of
-   !> the mesh. It moves vertically, or in its plane: along r and z, and turning.
+   !> the mesh.
    type, extends(scene_item_t) :: plate_values_t
       character(NAME_LENGTH) :: name = ''
       real(wp), allocatable :: corners(:, :)         !< (2, corners) of its own face, body on the left [m].
       real(wp) :: mass = 0.0_wp, force = 0.0_wp
       logical :: heavy = .false.
-      ! In the plane:
-      logical :: turns = .false.
-      real(wp) :: center(2) = 0.0_wp, inertia = 0.0_wp, force_r = 0.0_wp, moment = 0.0_wp
-      real(wp) :: penalty = 1.0e9_wp                !< Traction of a unit of distance of what is joined to it [kN/m3].
    end type plate_values_t
 
    !> Two boundaries, or a boundary and a plate, that may come into contact.

@@ -16,8 +16,8 @@ module scene_keys
    use permeability_laws, only: permeability_t
    use retention_groups, only: RETENTION_KEYS
    use scene_tolerances, only: ask_steps, ask_stress
-   use scene_parts, only: scene_item_t, amplitude_t, stage_t, place_of, LOAD_FORCE_Z, LOAD_MOMENT, PRESCRIBED_TURN, &
-                          initial_values_t, named_point_t
+   use scene_parts, only: scene_item_t, amplitude_t, stage_t, place_of, LOAD_FORCE_Z, LOAD_OF_BODY, &
+                          PRESCRIBED_OF_BODY, initial_values_t, named_point_t
    use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_fix_t, scene_load_t, scene_plate_t, &
                           scene_contact_t, scene_tie_t, item_of
    use spelling, only: nearest_name
@@ -440,8 +440,8 @@ contains
       call k%text('group', fix%group_name, 'boundary, region or node group', REQUIRED)
       call k%word('field', fix%field, 'u_r|u_z|p_w|p_c|p_a|rotation', &
                   'what is prescribed; the rotation [-] of a &plate that moves in the plane', REQUIRED)
-      fix%turns = fix%field == PRESCRIBED_TURN
-      if (fix%turns) fix%field = AT_U_Z
+      fix%of_body = fix%field == PRESCRIBED_OF_BODY
+      if (fix%of_body) fix%field = AT_U_Z
       call k%flag('kind', fix%limits, 'value|seepage', 'seepage', &
                   'seepage: p_w is at most the value; water may leave there, none enters', 'field=p_w')
       call k%number('value', fix%value, -BIG, BIG, 'prescribed value, at the datum [m, kPa]', 'hold=no')
@@ -466,8 +466,8 @@ contains
       call k%text('group', load%group_name, 'boundary (for force: node group)', REQUIRED)
       call k%word('kind', load%kind, 'pressure|shear_r|shear_z|water|rain|air|force_r|force_z|moment', &
                   'kind of load, see host/SCENE.md', REQUIRED)
-      load%turns = load%kind == LOAD_MOMENT
-      if (load%turns) load%kind = LOAD_FORCE_Z
+      load%of_body = load%kind == LOAD_OF_BODY
+      if (load%of_body) load%kind = LOAD_FORCE_Z
       call k%number('value', load%value, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN, kN m]', &
                     REQUIRED)
       call k%number('value_slope', load%value_slope, -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]')
@@ -494,7 +494,7 @@ contains
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
       type(scene_plate_t) :: plate
-      real(wp), allocatable :: r(:), center(:), outline(:)
+      real(wp), allocatable :: r(:), outline(:)
       real(wp) :: z
       logical :: up
 
@@ -502,38 +502,20 @@ contains
       z = 0.0_wp
       up = .false.
       call k%text('name', plate%name, 'rigid plate or foundation; also a group for &fix and &load', REQUIRED)
-      call k%flag('motion', plate%turns, 'vertical|plane', 'plane', &
-                  'plane: along r and z, and turning (plane strain)')
       call k%numbers('r', r, -BIG, BIG, 'begin and end of its own flat face [m]; or outline, or group')
       call k%text('group', plate%joined_name, 'boundary of the mesh that moves with the plate; or r, or outline')
       call k%number('z', z, -BIG, BIG, 'height of the plate''s own face at the start [m]', '+r')
       call k%flag('face', up, 'down|up', 'up', 'direction of the plate''s own face', '+r')
       call k%numbers('outline', outline, -BIG, BIG, &
                      'corners r, z, r, z, ... of its own face, the plate on the left; or r [m]', 'motion=plane')
-      call k%numbers('center', center, -BIG, BIG, 'r, z of the centre of mass at the start [m]', 'motion=plane')
-      call k%number('inertia', plate%inertia, TINY_, BIG, 'moment of inertia about it [Mg m2]', 'motion=plane')
       call k%number('mass', plate%mass, TINY_, BIG, 'mass of the plate [Mg]', REQUIRED)
       call k%flag('weight', plate%heavy, 'no|yes', 'yes', &
                   'the weight acts, and the plate starts in balance on its contact')
       call k%number('force', plate%force, -BIG, BIG, 'force on the plate, upwards [kN]')
-      call k%number('force_r', plate%force_r, -BIG, BIG, 'force along r, at the centre of mass [kN]', &
-                    'motion=plane')
-      call k%number('moment', plate%moment, -BIG, BIG, 'moment, from r to z [kN m]', 'motion=plane')
-      call k%number('penalty', plate%penalty, TINY_, BIG, &
-                    'traction of a unit of distance between a group and its place on the plate [kN/m3]', &
-                    'motion=plane')
-      call k%text('history', plate%amplitude_name, 'factor on force, force_r and moment', refers='history')
+      call k%text('history', plate%amplitude_name, 'factor on the forces', refers='history')
       if (count([k%given('group'), k%given('r'), k%given('outline')]) /= 1) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'a plate has a face of its own, r = begin, end (in the '// &
                     'plane also outline), or it is joined to a boundary, group = name: give one of the two.')
-      else if (plate%turns .and. scene%axisymmetric) then
-         call raise(fault, EXIT_INPUT, place_of(plate)//'motion = ''plane'' turns the plate, which axial symmetry '// &
-                    'has no place for; set geometry = ''plane_strain'' in &scene, or motion = ''vertical''.')
-      else if (plate%turns .and. .not. (k%given('center') .and. k%given('inertia'))) then
-         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate that moves in the plane needs center = r, z of '// &
-                    'its centre of mass [m] and inertia, its moment of inertia about it [Mg m2].')
-      else if (k%given('center') .and. size(center) /= 2) then
-         call raise(fault, EXIT_INPUT, place_of(plate)//'center = r, z are two numbers.')
       else if (k%given('outline') .and. (size(outline) < 4 .or. mod(size(outline), 2) == 1)) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'outline = r, z, r, z, ... are two corners or more.')
       else if (k%given('r') .and. size(r) /= 2) then
@@ -547,7 +529,6 @@ contains
       else if (k%given('outline')) then
          plate%corners = reshape(outline, [2, size(outline)/2])
       end if
-      if (k%given('center') .and. fault%code == 0) plate%center = center
       scene%plates = [scene%plates, plate]
    end subroutine take_plate
 

@@ -273,31 +273,21 @@ contains
    end function is_body
 
    !> Force [kN] that the residual of rigid body i is small against. docs/theory/host.md section 5.1.
-   !> The three unknowns of a body that turns are measured by the largest force of them: their units are one, and what
+   !> The unknowns of a body are measured by the largest force of them: their units are one, and what
    !> does not load one of them is in balance with what loads the others.
    pure real(wp) function body_scale(constraint, assembly, largest, i)
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
       real(wp), intent(in) :: largest(FIELDS)   !< Largest scale of every field so far, as of field_scales.
       integer, intent(in) :: i
-      integer :: j, k
 
-      body_scale = own(i)
-      do k = 1, size(constraint%bodies, 2)
-         if (.not. any(constraint%bodies(:, k) == i)) cycle
-         do j = 1, size(constraint%bodies, 1)
-            body_scale = max(body_scale, own(constraint%bodies(j, k)))
-         end do
-      end do
+      if (assembly%with_change) then
+         body_scale = maxval(assembly%change, mask=constraint%body == constraint%body(i))
+      else
+         body_scale = maxval(assembly%scale, mask=constraint%body == constraint%body(i))
+      end if
       body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), &
                        NO_FORCE, assembly%unresolved)
-   contains
-      pure real(wp) function own(unknown)
-         integer, intent(in) :: unknown
-
-         own = assembly%scale(unknown)
-         if (assembly%with_change) own = assembly%change(unknown)
-      end function own
    end function body_scale
 
    !> Norms of a residual over the unknowns that are free, displacements together. [kN, m3/s]

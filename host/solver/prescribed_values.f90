@@ -30,7 +30,7 @@ module prescribed_values
       type(added_box_t), allocatable :: added(:)        !< Forces of terms with laws of their own.
       real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
       real(wp), allocatable :: mass(:)        !< Masses of rigid bodies [Mg].
-      integer, allocatable :: bodies(:, :)    !< (3, bodies that turn) Their unknowns.
+      integer, allocatable :: body(:)         !< Number of the rigid body of an unknown; 0: none.
    end type constraint_t
 contains
    !> Whether a &fix has no effect at a node in this step.

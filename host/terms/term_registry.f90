@@ -9,6 +9,7 @@ module term_registry
    use friction, only: friction_t
    use key_table, only: key_table_t
    use model_types, only: model_t, term_box_t
+   use plane_plates, only: plane_plates_t
    use run_off, only: run_off_t
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t
@@ -30,6 +31,7 @@ contains
       type(registered_t), allocatable, intent(out) :: list(:)
 
       allocate (list(0))
+      call add(plane_plates_t())
       call add(strength_t())
       call add(staging_t())
       call add(absorbing_t())

@@ -267,7 +267,7 @@ MUTATIONS = [
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
 SPRINGS = "contact/plate_springs.f90"
 SEARCH, PLATE, JOINED = "contact/contact_search.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
-DRAINAGE = "terms/contact_drainage.f90"
+DRAINAGE, PLANE = "terms/contact_drainage.f90", "terms/plane_plates.f90"
 
 # Of the host's contact, below host.
 CONTACT = [
@@ -296,8 +296,9 @@ CONTACT = [
     ("the search forgets the reach", (SEARCH, "search%slave_box(1:2, e) - near", "search%slave_box(1:2, e) - 0.0_wp*near")),
     ("a plate feels nothing", (PLATE, "force = force + slopes(:, i)*result%force(n + i)",
                                "force = force + 0.0_wp*slopes(:, i)*result%force(n + i)")),
-    ("a plate turns without bending", (PLATE, "corner(TURN, TURN) + bending()", "corner(TURN, TURN)")),
-    ("a plate turns the other way", (PLATE, "[-arms(2, i), arms(1, i)]/motion%lever", "[arms(2, i), -arms(1, i)]/motion%lever")),
+    ("a plate turns without bending", (PLATE, "corner = corner + motion%bending(x0, q, result%force(n + 1:))",
+                                      "corner = corner")),
+    ("a plate turns the other way", (PLANE, "[-arms(2, i), arms(1, i)]/self%lever", "[arms(2, i), -arms(1, i)]/self%lever")),
     ("springs of a plate pull its nodes alone", (SPRINGS, "result%force(size(pull) + 1:) = -pull",
                                                  "result%force(size(pull) + 1:) = -0.0_wp*pull")),
     ("zeroed displacements relax the springs of a plate", (JOINED, "if (allocated(t%spring)) stretched(:, t%slave%node) =",
