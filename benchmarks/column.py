@@ -202,8 +202,9 @@ def host(n, steps, factors):
     pathlib.Path("column.nml").write_text(re.sub("@([A-Z]+)@", lambda found: str(words[found[1]]), scene), encoding="utf-8")
     program = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or ROOT/"build/release")/"host/mud_host"
     subprocess.run([program, "column.nml", "--quiet", "--output", "out"], check=True)
-    with open("out/histories.csv", encoding="utf-8") as file:
-        last = list(csv.DictReader(file))[-1]
+    sys.path.insert(0, str(ROOT/"common"))
+    import tables
+    last = tables.rows("out/histories.csv")[-1]
     return float(last["top.u_z"]), float(last["base.p_w"])
 
 
