@@ -36,6 +36,8 @@ module mud_substepping
 
    !> Turn of the domain, some degrees, from which on the higher order follows it: it is a transient that modified Euler
    !> pays for with many substeps, and whose errors add up along turning paths [-].
+   !> Part of a substep below which what an event leaves of it has no length [-].
+   real(wp), parameter :: NO_LENGTH = 1.0e-6_wp
    real(wp), parameter :: SHARP = 1.0e-3_wp
    !> The rest of a phase is divided into a whole number of pieces up to FEW, beyond into a power of the FEW-th root of
    !> 2. A piece may be STRETCHED times as long as error control proposes, whose margin is a tenth [-].
@@ -141,10 +143,14 @@ contains
       type(stepping_t), intent(inout) :: step
       real(wp), intent(inout) :: h             !< size, a share of the increment [-]
       type(integration_t), intent(inout) :: it
-      real(wp) :: time
+      real(wp) :: time, whole
 
+      whole = h
       step%h = next_size(par, it%inc, it%trial, h, step%factor, h >= it%inc%to - it%inc%from)
       call stop_at_event(par, step%error, h, it)
+      ! Rounding decides whether the event that ended the substep before is met again: such a piece has no length, and
+      ! the substep after it is as long as it would be without.
+      if (h < NO_LENGTH*whole) step%h = min(step%h, whole)
       if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
       if (step%elastic > 1 .and. par%guarded) then
          it%status = fail(MUD_NO_DIRECTION)
