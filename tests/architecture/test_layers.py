@@ -118,6 +118,20 @@ def misplaced(suites, folders):
             if (place := suite.removeprefix("tests/").rpartition("/")[0]) not in folders | beside]
 
 
+INSIDE = re.compile(r"\buse\s+mud_(params|state)\b|%\s*laws\b|\buse\s+path_tools\b.*\bparameters\b", re.IGNORECASE)
+LAW_SUITES = 13   # Suites that may know them: those of one law or one procedure, in tests/umat/core.
+
+
+def inside(suites):
+    """Suites that know what the core keeps parameters and state in. suites: {place below tests: text}."""
+    return sorted(suite for suite, text in suites.items() if any(INSIDE.search(line) for _, line in code_lines(text)))
+
+
+def of_the_contract(suites):
+    return [f"{suite} knows the parameters or the state of the core: path_tools has both by name"
+            for suite in inside(suites) if not suite.startswith("umat/core/")]
+
+
 AS_WRITTEN = {"scene_types", "namelists", "key_table", "key_schema"}   # What a run does not know.
 
 
@@ -184,6 +198,12 @@ def planted():
          [("node", "host/mesh", "use, intrinsic :: iso_fortran_env, only: x")])]
     mirror = [] if (misplaced(["tests/unit/test_a.pf"], {"host/mesh"})
                     and not misplaced(["tests/host/mesh/test_a.pf"], {"host/mesh"})) else ["misplaced suites"]
+    words = ("use mud_state, only: state_t", "use mud_params, only: params_t", "k = f(soil%laws)",
+             "use path_tools, only: &\n   parameters")
+    mirror += [f"the core seen by a suite of the contract: {text}" for text in words
+               if not of_the_contract({"umat/abi/a": text}) or of_the_contract({"umat/core/laws/a": text})]
+    if of_the_contract({"umat/contract/a": "use path_tools, only: soil_t, point_t ! use mud_state, only: x"}):
+        mirror.append("a suite that asks for a soil and a point is blamed")
     return (mirror + [f"{name}: the offence is not seen" for name, rule, bad, _ in cases if not rule(tree(*bad))]
             + [f"{name}: innocent code is blamed" for name, rule, _, good in cases if rule(tree(*good))])
 
@@ -200,6 +220,8 @@ def read():
 def test_folders_use_what_their_layer_may():
     files = read()
     have = {place(folder)[0] for folder, _ in files.values()}
+    suites = {str(file.relative_to(root / "tests"))[:-len(".pf")]: file.read_text(encoding="utf-8")
+              for file in sources("tests/umat/**/*.pf")}
     checks = [
         ("every rule sees its planted offence and nothing else", planted()),
         ("there are sources of every group to look at", sorted(set(GROUPS) - have)),
@@ -211,6 +233,10 @@ def test_folders_use_what_their_layer_may():
         ("every module that is used is there", strange_use(files)),
         ("a run knows the model, and neither the scene as it is written nor its keys",
          seen_by(files, "time_stepping") or ([] if seen_by(files, "model_builder") else ["nothing is ever seen"])),
+        ("suites of the contract ask for a soil and a point by name, never for what the core keeps them in",
+         of_the_contract(suites)),
+        (f"no more than {LAW_SUITES} suites, of single laws, know parameters or state of the core",
+         inside(suites) if not 0 < len(inside(suites)) <= LAW_SUITES else []),
         ("tests mirror the tree", misplaced([str(file.relative_to(root)) for file in sources("tests/**/test_*")
                                           if file.parent.name != "__pycache__"],
                                          {str(folder.relative_to(root)) for folder in sources("*", "*/*", "*/*/*")

@@ -3,10 +3,9 @@
 module abi_host
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_loc, c_null_char, c_null_ptr
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepare, mud_init, mud_update, mud_message, &
-      MUD_TANGENT_ELASTIC
+   use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepare, mud_init, mud_update, &
+      mud_message, MUD_TANGENT_ELASTIC, mud_default_props
    use mud_kinds, only: wp
-   use mud_params, only: default_props
    use mud_registry, only: NPROPS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, P_HYSTERESIS, P_MEMORY_RULE, P_SCHEME, &
       P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, RULE_CLASSIC, RULE_RETURN_POINT, SCHEME_OF_PAPER, S_LAYOUT, &
       S_VOID_RATIO, S_SATURATION, S_SUCTION
@@ -15,8 +14,8 @@ module abi_host
    implicit none (type, external)
    private
    public :: umat_call_t, call_umat, new_call, walked_call, take_rule, walk, random_strain, same_bits, untouched, &
-             refusal, elastic_matrix, common_refusal, begin_once, update_once, prepared_of, not_a_number, infinite, &
-             MARK, N_ARGUMENTS, UNIT_MATRIX, WITHOUT_GUARDS
+             refusal, elastic_matrix, default_props, common_refusal, begin_once, update_once, prepared_of, &
+             not_a_number, infinite, MARK, N_ARGUMENTS, UNIT_MATRIX, WITHOUT_GUARDS
    public :: A_STRESS, A_STATEV, A_DDSDDE, A_SCD, A_DSTRAN, A_PREDEF, A_DPRED, A_NDI, A_NTENS, A_NSTATV, A_PROPS, &
              A_NPROPS, A_DROT, A_PNEWDT, MANDATORY, TOUCHED, NO_CUT
 
@@ -60,6 +59,13 @@ module abi_host
       end subroutine umat
    end interface
 contains
+   !> PROPS of the paper with every default.
+   function default_props() result(props)
+      real(wp) :: props(NPROPS)
+
+      if (mud_default_props(props, NPROPS) /= 0) error stop 'abi_host: no defaults'
+   end function default_props
+
    subroutine call_umat(host)
       type(umat_call_t), intent(inout), target :: host
       type(c_ptr) :: a(N_ARGUMENTS)

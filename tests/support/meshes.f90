@@ -2,10 +2,9 @@
 !> Points of a mesh for the tests of mud_init_points, mud_update_points and mud_saturation_points.
 module meshes
    use, intrinsic :: iso_c_binding, only: c_int, c_loc
-   use abi_host, only: random_strain, prepared_of
+   use abi_host, only: random_strain, prepared_of, default_props
    use mud_interface, only: mud_report, mud_points, mud_init_points, mud_update_points, MUD_TANGENT_NONE
    use mud_kinds, only: wp
-   use mud_params, only: default_props
    use mud_registry, only: NPROPS, NSTATV => NSTATV_WITHOUT_HYSTERESIS, P_SCHEME, P_TOLERANCE
    use random_states, only: random_t
    implicit none (type, external)

@@ -10,7 +10,7 @@ module rate_cases
    use mud_status, only: mud_status_t
    use mud_registry, only: P_G_0, P_K_0, P_M_C, P_N_B, P_N_D, P_H_0, P_A_0
    use mud_tensor, only: IDENTITY, norm, ddot, deviator
-   use path_tools, only: material, vector_of
+   use path_tools, only: parameters, vector_of
    use random_states, only: random_t, uniform, log_uniform, random_tensor, random_deviator
    implicit none (type, external)
    private
@@ -109,7 +109,7 @@ contains
       type(rate_t) :: w
       real(wp) :: p, r(6), along(6), across(6), before, beside
 
-      this%par = material([P_G_0, P_K_0, P_M_C, P_N_B, P_N_D, P_H_0, P_A_0], &
+      this%par = parameters([P_G_0, P_K_0, P_M_C, P_N_B, P_N_D, P_H_0, P_A_0], &
                           [uniform(random, 40.0_wp, 300.0_wp), uniform(random, 40.0_wp, 600.0_wp), &
                            uniform(random, 0.9_wp, 1.8_wp), uniform(random, 0.5_wp, 4.0_wp), &
                            uniform(random, 0.5_wp, 8.0_wp), log_uniform(random, 1.0_wp, 50.0_wp), &
