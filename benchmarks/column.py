@@ -16,7 +16,6 @@ first size beside Terzaghi's series: that all solve the same problem. Three minu
 Kratos on the large mesh (--small) seconds.
 """
 import argparse
-import csv
 import json
 import math
 import os
@@ -28,6 +27,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT/"common"))
+import tables  # noqa: E402 (its folder is known only now)
+
 YOUNG, POISSON, MOBILITY, LOAD, STEP = 1e4, 0.25, 1e-6, 100.0, 0.2   # kPa, -, permeability over viscosity [m2/(kPa s)], kPa, s
 POROSITY = 0.8/1.8
 SIZES = {16: 50, 64: 4}   # cells along a side: steps N
@@ -202,8 +204,6 @@ def host(n, steps, factors):
     pathlib.Path("column.nml").write_text(re.sub("@([A-Z]+)@", lambda found: str(words[found[1]]), scene), encoding="utf-8")
     program = pathlib.Path(os.environ.get("MUD_BUILD_DIR") or ROOT/"build/release")/"host/mud_host"
     subprocess.run([program, "column.nml", "--quiet", "--output", "out"], check=True)
-    sys.path.insert(0, str(ROOT/"common"))
-    import tables
     last = tables.rows("out/histories.csv")[-1]
     return float(last["top.u_z"]), float(last["base.p_w"])
 
@@ -263,15 +263,13 @@ def measured(python, names, sizes, rounds):
 
 
 def table(rows):
-    small, large = (sorted({row["unknowns"] for row in rows}) + [None])[:2]
-    lines = [f"| program | method | {small:,} unknowns" + (f" | {large:,} unknowns" if large else "")
-             + " | settlement | pressure at the base |", "|---|---|---" + "|---"*bool(large) + "|---|---|"]
-    for row in (row for row in rows if row["unknowns"] == small):
-        other = [r["milliseconds"] for r in rows if r["program"] == row["program"] and r["unknowns"] == large]
-        lines.append(f"| {row['program']} | {row['method']} | {float(row['milliseconds']):.1f} | "
-                     + "".join(f"{float(ms):.0f} | " for ms in other) + f"{row['settlement_mm']} mm "
-                     f"({row['settlement_error_percent']} %) | {row['pressure_kPa']} kPa ({row['pressure_error_percent']} %) |")
-    return "\n".join(lines)
+    """Milliseconds by the number of unknowns, and the answers on the small mesh."""
+    sizes = sorted({row["unknowns"] for row in rows})
+    taken = {(row["program"], row["unknowns"]): float(row["milliseconds"]) for row in rows}
+    lines = [[row["program"], row["method"], *(f"{taken[row['program'], n]:.1f}" for n in sizes),
+              f"{row['settlement_mm']} mm ({row['settlement_error_percent']} %)",
+              f"{row['pressure_kPa']} kPa ({row['pressure_error_percent']} %)"] for row in rows if row["unknowns"] == sizes[0]]
+    return tables.markdown(["program", "method", *(f"{n:,} unknowns" for n in sizes), "settlement", "pressure at the base"], lines)
 
 
 def main():
@@ -292,15 +290,12 @@ def main():
     machine = (f"{processor[1] if processor else 'Machine'}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the start; "
                f"medians of {given.rounds} rounds.")
     rows = measured(given.peers and given.peers.absolute()/"bin/python3", names, sizes, given.rounds)
-    page = (f"# The host beside other programs\n\nMilliseconds of the processor a step of a consolidating square of elastic soil, "
-            f"made by `column.py`; the answers at {rows[0]['time']} s on the small mesh, beside Terzaghi's series.\n\n{machine}\n\n"
-            f"{table(rows)}\n")
+    page = tables.wrapped(f"# The host beside other programs\n\nMilliseconds of the processor a step of a consolidating square "
+                          f"of elastic soil, made by `column.py`; the answers at {rows[0]['time']} s on the small mesh, beside "
+                          f"Terzaghi's series.\n\n{machine}\n\n{table(rows)}")
     print(page)
     if given.results:
-        with open(given.results/"column.csv", "w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, rows[0], lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows)
+        tables.write(given.results/"column.csv", list(rows[0]), [list(row.values()) for row in rows])
         (given.results/"column.md").write_text(page, encoding="utf-8")
 
 
