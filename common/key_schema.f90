@@ -30,7 +30,7 @@ module key_schema
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< Number of values of a list, 0: any number.
       !> Conditions of its effect, between blanks: `key=word|word` another key has one of these words or none, `+key`
-      !> another key is given, `-key` it is not, `:p_w` the unknown exists.
+      !> another key is given, `-key` it is not, `:p_w` the unknown exists, `:time` stages have time.
       character(48) :: acts = ''
       character(16) :: refers = ''       !< Kind t: the group whose name it gives; 'material' stands for all laws.
    end type key_t

@@ -13,7 +13,7 @@ module porous_balance
    implicit none (type, external)
    private
    public :: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, &
-             GW, GA, DEVIATOR
+             GW, GA
 
    integer, parameter :: PLACES = 12
    ! Places, or places before the first; the strain comes first.
@@ -21,9 +21,6 @@ module porous_balance
    integer, parameter :: U = 4            !< Displacements are at U + 1, U + 2.
    integer, parameter :: PW = 7, PC = 8   !< Water pressure, suction.
    integer, parameter :: GW = 8, GA = 10  !< Gradients of p_w at GW + 1, GW + 2, of p_c at GA + 1, GA + 2.
-   !> Twice the deviator of a strain with engineering shear: stress of a unit viscosity from the rate of strain.
-   real(wp), parameter :: DEVIATOR(4, 4) = &
-      reshape([4, -2, -2, 0, -2, 4, -2, 0, -2, -2, 4, 0, 0, 0, 0, 3], [4, 4])/3.0_wp
 
    !> Strain, pressures, their gradients and rates at a point, from the nodes.
    type :: kinematics_t
@@ -127,11 +124,11 @@ contains
       response = 0.0_wp
       response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
       response(U + 1:U + 2) = rho*accel - k%source(1:2)
-      if (is_viscous(region, scheme)) response(1:4) = response(1:4) + region%viscosity*matmul(DEVIATOR, k%rate)
+      if (resists_rate(region, scheme)) response(1:4) = response(1:4) + matmul(region%against_rate, k%rate)
       if (.not. with_tangent) return
       tangent(:U + 2, :U + 2) = 0.0_wp
       tangent(1:4, 1:4) = l_s*skeleton%tangent
-      if (is_viscous(region, scheme)) tangent(1:4, 1:4) = tangent(1:4, 1:4) + region%viscosity*scheme%c_v*DEVIATOR
+      if (resists_rate(region, scheme)) tangent(1:4, 1:4) = tangent(1:4, 1:4) + scheme%c_v*region%against_rate
       tangent(U + 1, U + 1) = rho*slope_of_inertia(region, scheme)
       tangent(U + 2, U + 2) = tangent(U + 1, U + 1)
       do i = 1, 3
@@ -150,13 +147,13 @@ contains
          level = level + region%stiffness_damping/scheme%dt
    end function level_of_stress
 
-   !> Whether a viscous stress acts: static stages have no time.
-   pure logical function is_viscous(region, scheme)
+   !> Whether a stress of the rate of strain acts: static stages have no time.
+   pure logical function resists_rate(region, scheme)
       type(region_t), intent(in) :: region
       type(scheme_t), intent(in) :: scheme
 
-      is_viscous = region%viscosity > 0.0_wp .and. scheme%has_rates
-   end function is_viscous
+      resists_rate = allocated(region%against_rate) .and. scheme%has_rates
+   end function resists_rate
 
    !> Slope of accelerations and damping against the new displacements [1/s2].
    pure real(wp) function slope_of_inertia(region, scheme) result(slope)
@@ -255,12 +252,12 @@ contains
          accel(2) = accel(2) + k%gravity
          response = 0.0_wp
          response(1:4) = stress0(1:4) + l_s*(skeleton%stress - stress0(1:4))
-         if (is_viscous(region, scheme)) response(1:4) = response(1:4) + region%viscosity*matmul(DEVIATOR, k%rate)
+         if (resists_rate(region, scheme)) response(1:4) = response(1:4) + matmul(region%against_rate, k%rate)
          response(1:3) = response(1:3) - pressure
          response(U + 1:U + 2) = rho*accel - k%source(1:2)
          if (.not. with_tangent) return
          tangent(1:4, 1:4) = l_s*skeleton%tangent
-         if (is_viscous(region, scheme)) tangent(1:4, 1:4) = tangent(1:4, 1:4) + region%viscosity*scheme%c_v*DEVIATOR
+         if (resists_rate(region, scheme)) tangent(1:4, 1:4) = tangent(1:4, 1:4) + scheme%c_v*region%against_rate
          tangent(1:3, PW) = -l
          tangent(U + 1, U + 1) = rho*slope_of_inertia(region, scheme)
          tangent(U + 2, U + 2) = tangent(U + 1, U + 1)

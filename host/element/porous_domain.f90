@@ -43,7 +43,8 @@ module porous_domain
       real(wp) :: void_ratio = 0.0_wp   !< Initially [-].
       real(wp) :: damping = 0.0_wp      !< Force against the velocity over mass, in dynamic stages [1/s].
       real(wp) :: stiffness_damping = 0.0_wp  !< Stress of the skeleton over its rate, in dynamic stages [s].
-      real(wp) :: viscosity = 0.0_wp    !< Shear viscosity beside the skeleton, in stages with time [kPa s].
+      !> Stress beside the skeleton over the rate of strain, in stages with time [kPa s]; not allocated: none. (4, 4)
+      real(wp), allocatable :: against_rate(:, :)
       integer :: drainage = COUPLED
       logical :: with_w = .false., with_c = .false.   !< Whether its pores hold water, and air at another pressure.
    end type region_t

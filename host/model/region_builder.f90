@@ -85,7 +85,6 @@ contains
          region%rho_s = given%rho_s
          region%damping = given%damping
          region%stiffness_damping = given%stiffness_damping
-         region%viscosity = given%viscosity
          region%void_ratio = given%void_ratio
          ! Without fluids in the scene there is no difference.
          region%drainage = merge(given%drainage, COUPLED, domain%with_w)

@@ -9,7 +9,6 @@ module energy_ledger
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use linear_forces, only: work_of_linear_forces
    use degrees_of_freedom, only: dofs_t
-   use porous_balance, only: DEVIATOR
    use porous_domain, only: domain_t, region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
                             gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
@@ -33,7 +32,7 @@ module energy_ledger
       real(wp) :: contact = 0.0_wp    !< Work done on contacts: on their penalty, and by friction [kJ].
       real(wp) :: dissipated = 0.0_wp   !< Work that terms dissipated, as sliding does [kJ].
       real(wp) :: seepage = 0.0_wp    !< Dissipated by seepage [kJ].
-      real(wp) :: damping = 0.0_wp    !< Dissipated by damping and viscosity of regions [kJ].
+      real(wp) :: damping = 0.0_wp    !< Dissipated by damping of regions [kJ].
       real(wp) :: outflow = 0.0_wp, outflow_air = 0.0_wp !< Through prescribed pressures, less rain: both, air [m3].
       real(wp) :: largest_work = 0.0_wp !< Largest of the works and of the kinetic energy at the start, so far [kJ].
       real(wp) :: open_0 = 0.0_wp       !< Imbalance where the present stage began [kJ].
@@ -256,8 +255,8 @@ contains
             work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
             rho = mixture_density(domain, region, n, s)
             work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
-            if (region%viscosity > 0.0_wp .and. scheme%has_rates) work%damping = work%damping &
-               + gp%weight*region%viscosity*dot_product(matmul(DEVIATOR, strain_of(gp, v)), strain)
+            if (allocated(region%against_rate) .and. scheme%has_rates) work%damping = work%damping &
+               + gp%weight*dot_product(matmul(region%against_rate, strain_of(gp, v)), strain)
             if (.not. scheme%has_inertia) cycle
             push = gp%weight*rho*matmul(du, gp%n)
             work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt

@@ -26,6 +26,7 @@ module effect_names
    end type term_switch_t
 
    type(term_switch_t), parameter :: TERM_SWITCHES(*) = [ &
+      term_switch_t(OF_DAMPING, 'region', 'viscosity', '0'), &
       term_switch_t(OF_ABSORBING, 'absorbing', '', ''), &
       term_switch_t(OF_DRAINAGE, 'contact', 'drainage', 'fixed', wet=.true.), &
       term_switch_t(OF_FRICTION, 'contact', 'friction', '0'), &

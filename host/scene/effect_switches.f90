@@ -29,7 +29,7 @@ contains
       integer, intent(in) :: effect   !< One of OF_...
       integer :: i
 
-      present = .false.
+      present = any([(is_said(scene, TERM_SWITCHES(i)), i=1, size(TERM_SWITCHES))] .and. TERM_SWITCHES%effect == effect)
       select case (effect)
       case (OF_INERTIA)
          present = any(has_inertia(scene%stages%kind))
@@ -44,17 +44,13 @@ contains
       case (OF_CONTACT)
          present = size(scene%contacts) > 0
       case (OF_DAMPING)
-         present = any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp .or. &
-                       scene%regions%viscosity > 0.0_wp)
+         present = present .or. any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
       case (OF_LIMITS)
          present = scene%fields /= WITH_U .and. (any(scene%fixes%limits) .or. any(scene%loads%kind == LOAD_RAIN))
       case (OF_VOID_RATIO)
          if (scene%fields == WITH_P_C) &
             present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
-      case default
-         present = any([(is_said(scene, TERM_SWITCHES(i)), i=1, size(TERM_SWITCHES))] .and. &
-                       TERM_SWITCHES%effect == effect)
-         if (any(TERM_SWITCHES%effect == effect)) return
+      case (OF_HYSTERESIS:OF_ELASTIC_DOMAIN)
          present = any([(parameter_of(scene, i, trim(SWITCHES(effect))) > 0.0_wp, i=1, size(scene%materials))])
       end select
    end function is_present
@@ -85,6 +81,10 @@ contains
       integer :: i
 
       why = ''
+      do i = 1, size(TERM_SWITCHES)
+         if (TERM_SWITCHES(i)%effect == effect .or. (TERM_SWITCHES(i)%wet .and. effect == OF_P_W)) &
+            call unsay(scene, TERM_SWITCHES(i))
+      end do
       select case (effect)
       case (OF_INERTIA)
          where (has_inertia(scene%stages%kind)) scene%stages%kind = QUASI_STATIC
@@ -96,9 +96,6 @@ contains
          scene%fields = WITH_U
          scene%seepage_inertia = .false.
          if (size(scene%ties) > 0) scene%ties%pressures = .false.
-         do i = 1, size(TERM_SWITCHES)
-            if (TERM_SWITCHES(i)%wet) call unsay(scene, TERM_SWITCHES(i))
-         end do
       case (OF_P_C)
          why = water_given_by_others(scene)
          if (why /= '') return
@@ -113,18 +110,14 @@ contains
       case (OF_DAMPING)
          scene%regions%damping = 0.0_wp
          scene%regions%stiffness_damping = 0.0_wp
-         scene%regions%viscosity = 0.0_wp
       case (OF_LIMITS)
          ! The limit is prescribed, and all rain flows in.
          scene%fixes%limits = .false.
          where (scene%loads%kind == LOAD_RAIN) scene%loads%kind = LOAD_WATER
       case (OF_VOID_RATIO)
          call freeze_retention(scene, why)
-      case default
-         do i = 1, size(TERM_SWITCHES)
-            if (TERM_SWITCHES(i)%effect == effect) call unsay(scene, TERM_SWITCHES(i))
-         end do
-         if (all(TERM_SWITCHES%effect /= effect)) call switch_off(scene, trim(SWITCHES(effect)))
+      case (OF_HYSTERESIS:OF_ELASTIC_DOMAIN)
+         call switch_off(scene, trim(SWITCHES(effect)))
       end select
    end subroutine remove
 

@@ -41,7 +41,6 @@ module scene_types
    type, extends(scene_item_t) :: scene_region_t
       character(LENGTH) :: group_name = 'all', material_name = '', retention_name = '', permeability_name = ''
       real(wp) :: rho_s = 2.65_wp, void_ratio = -1.0_wp, damping = 0.0_wp, stiffness_damping = 0.0_wp
-      real(wp) :: viscosity = 0.0_wp
       integer :: drainage = COUPLED
       logical :: rest = .false.         !< Without a group: the elements that no other region has.
    end type scene_region_t

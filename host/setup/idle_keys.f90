@@ -2,6 +2,7 @@
 !> Keys of a scene that change nothing because another key says so, and definitions that nobody uses.
 module idle_keys
    use faults, only: at_line
+   use generalised_alpha, only: has_rates
    use key_schema, only: key_t, given, line_of, place_of, text_of
    use material_registry, only: is_law
    use namelists, only: group_t
@@ -31,16 +32,16 @@ contains
          if (is_law(scene%groups(g)%name)) cycle
          do i = 1, scene%groups(g)%count
             k = place_of(keys, scene%groups(g)%name, scene%groups(g)%entries(i)%key)
-            if (k > 0) call judge(keys, keys(k), scene%fields, scene%groups(g), warnings)
+            if (k > 0) call judge(keys, keys(k), scene, scene%groups(g), warnings)
          end do
       end do
       call list_unused_definitions(keys, scene, warnings)
    end subroutine list_idle_keys
 
    !> The conditions of a key that a group gives.
-   subroutine judge(keys, key, fields, group, warnings)
+   subroutine judge(keys, key, scene, group, warnings)
       type(key_t), intent(in) :: keys(:), key
-      integer, intent(in) :: fields
+      type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(:), allocatable :: rest, condition, other, word
@@ -58,7 +59,12 @@ contains
          case ('-')
             if (given(group, other)) call idle(' beside '//other)
          case (':')
-            if (fields < merge(WITH_P_W, WITH_P_C, other == 'p_w')) call idle(': the scene has no field '//other)
+            if (other == 'time') then
+               if (.not. any(has_rates(scene%stages%kind))) call idle(': every stage is static and has no time; '// &
+                  'analysis = ''quasi_static'' of &stage has')
+            else if (scene%fields < merge(WITH_P_W, WITH_P_C, other == 'p_w')) then
+               call idle(': the scene has no field '//other)
+            end if
          case default
             at = index(condition, '=')
             other = condition(:at - 1)

@@ -258,8 +258,6 @@ contains
       call k%number('damping', region%damping, ZERO, BIG, 'force against the velocity over mass, dynamic stages [1/s]')
       call k%number('stiffness_damping', region%stiffness_damping, ZERO, BIG, &
                     'stress of the skeleton from its rate, dynamic stages [s]')
-      call k%number('viscosity', region%viscosity, ZERO, BIG, &
-                    'shear viscosity beside the skeleton, not in static stages [kPa s]')
       region%rest = .not. k%given('group')
       scene%regions = [scene%regions, region]
    end subroutine take_region

@@ -5,7 +5,6 @@ module scene_warnings
    use kinds, only: wp
    use faults, only: at_line
    use boundary_warnings, only: list_boundary_warnings
-   use generalised_alpha, only: has_rates
    use idle_keys, only: list_idle_keys
    use warnings, only: add_warning, WARNING_LENGTH
    use start_findings, only: tension_t, balance_t
@@ -160,12 +159,6 @@ contains
          call add_warning(place_of(scene%regions(i))//'the region '''//trim(scene%regions(i)%group_name)//''' has '// &
             'no element'//trim(merge(': other regions name them all.', '.                             ', &
             scene%regions(i)%rest)), warnings)
-      end do
-      if (any(has_rates(model%stages%kind))) return
-      do i = 1, size(scene%regions)
-         if (scene%regions(i)%viscosity > 0.0_wp) call add_warning(place_of(scene%regions(i))//'viscosity of the '// &
-            'region '''//trim(scene%regions(i)%group_name)//''' has no effect: every stage is static and has no '// &
-            'time; analysis = ''quasi_static'' of &stage has.', warnings)
       end do
    end subroutine look_at_regions
 

@@ -15,6 +15,7 @@ module term_registry
    use scene_types, only: scene_t
    use staging, only: staging_t
    use strength, only: strength_t
+   use viscosity, only: viscosity_t
    implicit none (type, external)
    private
    public :: own_groups, declare_keys, build_terms
@@ -40,6 +41,7 @@ contains
       call add(run_off_t())
       call add(friction_t())
       call add(buffer_t())
+      call add(viscosity_t())
    contains
       subroutine add(one)
          class(scene_term_t), intent(in) :: one

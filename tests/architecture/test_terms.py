@@ -19,6 +19,7 @@ WORDS = {
     "run_off": (r"run_off\b|limit_pressures|ponding|rain_at|check_rain", None),
     "staging": (r"staging|held_up|staged|mark_absent", None),
     "strength": (r"strength", None),
+    "viscosity": (r"viscos", None),
 }
 STEP = ("run/step_attempt", "run/time_stepping", "solver/newton_step")   # They know term_t alone.
 
