@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Keys of input files: a program lists its keys once, with kind, default, range or words, and meaning; checks, readers,
-!> templates and help texts come from that list.
+!> Keys of input files, with kind, default, range or words, and meaning: checks, templates and help texts come from a
+!> list of them, which key_table makes.
 module key_schema
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
@@ -10,8 +10,8 @@ module key_schema
    implicit none (type, external)
    private
    public :: key_t, REQUIRED, NONE, UNBOUNDED, LONGEST_WORD
-   public :: check_group, check_entries, place_of, describe_key, described, words_of
-   public :: given, line_of, text_of, texts_of, number_of, numbers_of, word_is, get_text, get_number, get_numbers
+   public :: check_group, place_of, described, words_of
+   public :: given, line_of, texts_of, numbers_of, get_text, get_number
 
    character(*), parameter :: NONE = '', REQUIRED = '*'   !< Defaults of a key that may be left out, or must be given.
    real(wp), parameter :: UNBOUNDED = 1.0e30_wp           !< A bound of this size is none.
@@ -25,8 +25,8 @@ module key_schema
       character :: kind                  !< n number, i integer, t text, w one of the words; capital: a list of them
       character(14) :: preset            !< Default of the key, or REQUIRED or NONE.
       real(wp) :: lower, upper           !< Range of a number.
-      character(120) :: meaning
-      character(240) :: words = ''       !< Kinds w, W: the words, divided by |.
+      character(320) :: meaning
+      character(240) :: words = ''       !< Kinds w, W: the words, divided by |; n: words that stand for a number.
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< Number of values of a list, 0: any number.
       !> Conditions of its effect, between blanks: `key=word|word` another key has one of these words or none, `+key`
@@ -35,8 +35,9 @@ module key_schema
       character(16) :: refers = ''       !< Kind t: the group whose name it gives; 'material' stands for all laws.
    end type key_t
 contains
-   !> Refuses an unknown group and, in a known one, a missing key and everything that check_entries refuses. Faults are
-   !> EXIT_INPUT with file and line. keys(:) are those of all groups that the program knows.
+   !> Refuses an unknown group and, in a known one, unknown keys, values of the wrong kind, number or range, and a
+   !> missing key. Faults are EXIT_INPUT with file and line; ranges in the unit of the key. keys(:) are those of all
+   !> groups that the program knows.
    subroutine check_group(keys, group, open, fault)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group
@@ -60,8 +61,6 @@ contains
       end do
    end subroutine check_group
 
-   !> Refuses unknown keys, and values of the wrong kind, number or range. Faults are EXIT_INPUT with file and line;
-   !> ranges in the unit of the key. keys(:) of any size, of one group or several.
    subroutine check_entries(keys, group, open, fault)
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: group
@@ -99,7 +98,7 @@ contains
          call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(key%name)//' takes '//whole(wanted)// &
                     trim(merge(' value ', ' values', wanted == 1))//', '//whole(item%count)// &
                     trim(merge(' is ', ' are', item%count == 1))//' given ('//described(key)// &
-                    ')'//trim(merge('; is a "=" missing?', '                   ', item%count > wanted))//'.')
+                    ')'//trim(merge('; is a "=" missing?', '.                  ', item%count > wanted)))
          return
       end if
       integral = scan(key%kind, 'iI') > 0
@@ -108,7 +107,9 @@ contains
          case ('n', 'N', 'i', 'I')
             call read_number(item%values(i), value, good)
             if (good .and. integral) good = abs(value - anint(value)) <= 0.0_wp
-            if (.not. good) then
+            if (.not. good .and. key%words /= '') then
+               if (.not. is_word(key%words, item%values(i))) call refuse('is neither a number nor one of its words')
+            else if (.not. good) then
                call refuse('is not '//trim(merge('an integer', 'a number  ', integral)))
             else if (value < key%lower .or. value > key%upper) then
                call refuse('is outside its range')
@@ -157,19 +158,10 @@ contains
       character(*), intent(in) :: group, name
 
       do place = 1, size(keys)
-         if (keys(place)%group == group .and. keys(place)%name == lower_case(name)) return
+         if (keys(place)%group == group .and. lower_case(keys(place)%name) == lower_case(name)) return
       end do
       place = 0
    end function place_of
-
-   !> Range and meaning of a key, by its name. There must be such a key. keys(:) of any size.
-   pure function describe_key(keys, group, name) result(text)
-      type(key_t), intent(in) :: keys(:)
-      character(*), intent(in) :: group, name
-      character(:), allocatable :: text
-
-      text = described(keys(place_of(keys, group, name)))
-   end function describe_key
 
    !> "from 0.01 to 5: void ratio", the range in the unit of the key.
    pure function described(key) result(text)
@@ -183,7 +175,7 @@ contains
                                            short(key%upper)//' '
          if (key%unit /= '') text = text//trim(key%unit)//' '
       end if
-      if (key%words /= '') text = trim(key%words)//' '
+      if (scan(key%kind, 'wW') > 0) text = trim(key%words)//' '
       if (text /= '') text = trim(text)//': '
       text = text//trim(key%meaning)
    end function described
@@ -205,22 +197,6 @@ contains
       if (given(group, name)) line = group%entries(find_entry(group, name))%line
    end function line_of
 
-   !> A text, or its default. The key must be one of keys(:).
-   function text_of(keys, group, name) result(text)
-      type(key_t), intent(in) :: keys(:)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-      character(:), allocatable :: text
-      integer :: place
-
-      place = find_entry(group, name)
-      if (place > 0) then
-         text = trim(group%entries(place)%values(1))
-      else
-         text = trim(keys(place_of(keys, group%name, name))%preset)
-      end if
-   end function text_of
-
    !> Texts of a list; empty if it is not given. texts(:) has as many entries as the list has values.
    function texts_of(group, name) result(texts)
       type(group_t), intent(in) :: group
@@ -233,27 +209,7 @@ contains
       if (place > 0) texts = group%entries(place)%values(:group%entries(place)%count)
    end function texts_of
 
-   !> Whether the value of a key (its default where it is not given) is this word; case is ignored. The word is in lower
-   !> case, the key one of keys(:).
-   logical function word_is(keys, group, name, word)
-      type(key_t), intent(in) :: keys(:)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name, word
-
-      word_is = lower_case(text_of(keys, group, name)) == word
-   end function word_is
-
-   !> A number that was checked, or its default; 0 if it has none. In the unit of the key, which must be one of keys(:).
-   real(wp) function number_of(keys, group, name)
-      type(key_t), intent(in) :: keys(:)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-      logical :: good
-
-      call read_number(text_of(keys, group, name), number_of, good)
-   end function number_of
-
-   !> Numbers of a list; empty if it is not given. In the unit of the key; they must have passed check_entries.
+   !> Numbers of a list; empty if it is not given. In the unit of the key; they must have passed check_group.
    function numbers_of(group, name) result(values)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -296,20 +252,4 @@ contains
       found = place > 0
       if (found) call read_number(group%entries(place)%values(1), value, found)
    end subroutine get_number
-
-   !> Numbers that were checked, as many as there is room for; `values` stays where the group has none. values(:) of any
-   !> size, in the unit of the key.
-   subroutine get_numbers(group, name, values)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: name
-      real(wp), intent(inout) :: values(:)
-      integer :: place, i
-      logical :: good
-
-      place = find_entry(group, name)
-      if (place == 0) return
-      do i = 1, min(size(values), group%entries(place)%count)
-         call read_number(group%entries(place)%values(i), values(i), good)
-      end do
-   end subroutine get_numbers
 end module key_schema

@@ -1,27 +1,49 @@
 ! SPDX-License-Identifier: MIT
 !> Keys that are written once: every statement names a key, the value that it sets, its range and its meaning. The same
 !> statements list the keys (for checks, templates and messages) and read a group. The default of a key is what its
-!> value was before; a default outside of the range is none.
+!> value was before; a default outside of the range is none. A reader declares all its keys first; with a table that
+!> only lists it ends there.
 module key_table
    use kinds, only: wp
-   use key_schema, only: key_t, NONE, REQUIRED, LONGEST_WORD, get_text, get_number, numbers_of, texts_of, words_of, &
-                         group_gives => given
+   use key_schema, only: key_t, NONE, REQUIRED, LONGEST_WORD, described, get_text, get_number, numbers_of, place_of, &
+                         texts_of, words_of, group_gives => given
    use namelists, only: group_t
    use texts, only: lower_case, short, whole_text => whole, LENGTH
    implicit none (type, external)
    private
-   public :: key_table_t
+   public :: key_table_t, reading, listing
 
    type :: key_table_t
-      type(group_t) :: group                  !< Group that is read; one without entries gives nothing.
-      type(key_t), allocatable :: keys(:)     !< Listed so far; not allocated: keys are not listed.
+      type(group_t) :: group                  !< Group that is read.
+      logical :: lists = .false.              !< The keys are wanted; there is no group to read.
+      type(key_t), allocatable :: keys(:)     !< Declared so far; not allocated: they are not kept.
+      character(5) :: stress = 'kPa'          !< Unit in which the group gives stresses.
+      real(wp) :: per_kpa = 1.0_wp            !< Number of this unit that makes a kPa.
    contains
-      procedure :: given, number, whole, word, flag, text, numbers, wholes, texts
+      procedure :: given, number, whole, word, flag, text, numbers, wholes, texts, about
       procedure, private :: list
    end type key_table_t
 
-   ! Of every procedure: `acts` says when the key has an effect, see key_t; REQUIRED: it must be given.
+   ! Of every procedure: `acts` says when the key has an effect, see key_t; REQUIRED: it must be given. Where there is a
+   ! `unit`, it is kPa, in which the range is said: it is converted to the unit of the group.
 contains
+   !> A table that reads a group and keeps its keys.
+   pure type(key_table_t) function reading(group) result(table)
+      type(group_t), intent(in) :: group
+
+      table%group = group
+      allocate (table%keys(0))
+   end function reading
+
+   !> A table that lists the keys of a group.
+   pure type(key_table_t) function listing(name) result(table)
+      character(*), intent(in) :: name
+
+      table%group%name = name
+      table%lists = .true.
+      allocate (table%keys(0), table%group%entries(0))
+   end function listing
+
    !> Whether the group gives a key.
    pure logical function given(self, name)
       class(key_table_t), intent(in) :: self
@@ -30,15 +52,29 @@ contains
       given = group_gives(self%group, name)
    end function given
 
-   subroutine list(self, key, acts)
+   !> Range and meaning of a key that was declared, of a table that keeps its keys.
+   pure function about(self, name) result(sentence)
+      class(key_table_t), intent(in) :: self
+      character(*), intent(in) :: name
+      character(:), allocatable :: sentence
+
+      sentence = described(self%keys(place_of(self%keys, self%group%name, name)))
+   end function about
+
+   subroutine list(self, key, acts, unit)
       class(key_table_t), intent(inout) :: self
       type(key_t), intent(in) :: key
-      character(*), intent(in), optional :: acts
+      character(*), intent(in), optional :: acts, unit
       type(key_t) :: listed
 
       if (.not. allocated(self%keys)) return
       listed = key
       listed%group = self%group%name(:len(listed%group))
+      if (present(unit)) then
+         listed%unit = self%stress
+         listed%lower = listed%lower*self%per_kpa
+         listed%upper = listed%upper*self%per_kpa
+      end if
       if (present(acts)) then
          if (acts == REQUIRED) listed%preset = REQUIRED
          if (acts /= REQUIRED) listed%acts = acts
@@ -46,18 +82,20 @@ contains
       self%keys = [self%keys, listed]
    end subroutine list
 
-   subroutine number(self, name, value, lower, upper, meaning, acts)
+   !> `shown` is how the default is written, where that is not the shortest way.
+   subroutine number(self, name, value, lower, upper, meaning, acts, unit, shown)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, meaning
       real(wp), intent(inout) :: value
       real(wp), intent(in) :: lower, upper
-      character(*), intent(in), optional :: acts
+      character(*), intent(in), optional :: acts, unit, shown
       character(14) :: preset
       logical :: found
 
       preset = NONE
       if (value >= lower .and. value <= upper) preset = short(value)
-      call self%list(key_t('', name, 'n', preset, lower, upper, meaning), acts)
+      if (present(shown)) preset = shown
+      call self%list(key_t('', name, 'n', preset, lower, upper, meaning), acts, unit)
       call get_number(self%group, name, value, found)
    end subroutine number
 
@@ -127,14 +165,18 @@ contains
    end subroutine text
 
    !> A list of numbers, empty where it is not given.
-   subroutine numbers(self, name, values, lower, upper, meaning, acts)
+   subroutine numbers(self, name, values, lower, upper, meaning, acts, unit, count)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, meaning
       real(wp), allocatable, intent(out) :: values(:)   !< (numbers)
       real(wp), intent(in) :: lower, upper
-      character(*), intent(in), optional :: acts
+      character(*), intent(in), optional :: acts, unit
+      integer, intent(in), optional :: count   !< So many; default: any number.
+      type(key_t) :: key
 
-      call self%list(key_t('', name, 'N', NONE, lower, upper, meaning), acts)
+      key = key_t('', name, 'N', NONE, lower, upper, meaning)
+      if (present(count)) key%values = count
+      call self%list(key, acts, unit)
       values = numbers_of(self%group, name)
    end subroutine numbers
 

@@ -11,7 +11,8 @@ module library_tables
    implicit none (type, external)
    private
    public :: library_version, property_count, property_index, property_name, property_unit, property_origin, &
-             property_meaning, property_option, property_range, range_for, state_count, statev_index, statev_name
+             property_meaning, property_option, option_words, property_range, range_for, state_count, statev_index, &
+             statev_name
 
    integer, parameter :: BUFFER = 600
 contains
@@ -130,6 +131,24 @@ contains
       end do
       value = 0.0_wp
    end subroutine property_option
+
+   !> The words that stand for values of a parameter, divided by |; empty where there are none.
+   function option_words(place) result(words)
+      integer, intent(in) :: place   !< From 1.
+      character(:), allocatable :: words
+      character(BUFFER) :: raw
+      real(wp) :: value
+      integer(c_int) :: number
+
+      words = ''
+      raw = c_null_char
+      number = 0
+      do while (mud_option(place - 1, number, value, raw, BUFFER) == 0)
+         words = words//lower_case(from_c(raw))//'|'
+         number = number + 1
+      end do
+      words = words(:max(0, len(words) - 1))
+   end function option_words
 
    !> Bounds and default of a parameter, in kPa; zeros if there is none of that place. The place is from 1; units as
    !> property_unit says.

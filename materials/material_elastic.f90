@@ -2,20 +2,16 @@
 !> Isotropic linear elasticity of the effective stress, beside a retention curve.
 module material_elastic
    use kinds, only: wp
-   use key_schema, only: key_t, number_of, REQUIRED, UNBOUNDED
+   use key_schema, only: REQUIRED, UNBOUNDED
+   use key_table, only: key_table_t
    use faults, only: fault_t
-   use namelists, only: group_t
    use material_point, only: material_t, response_t, batch_report_t, swollen, NAME_LENGTH
    use retention_curves, only: saturation_t
    implicit none (type, external)
    private
-   public :: elastic_t, new_elastic, isotropic, ELASTIC_KEYS
+   public :: elastic_t, new_elastic, isotropic
 
    integer, parameter :: PLACE_E = 1, PLACE_S_W = 2   !< Places in the state.
-
-   type(key_t), parameter :: ELASTIC_KEYS(*) = [ &
-      key_t('elastic', 'young', 'n', REQUIRED, 1.0e-30_wp, UNBOUNDED, 'Young''s modulus [kPa]'), &
-      key_t('elastic', 'poisson', 'n', REQUIRED, -0.99_wp, 0.4999_wp, 'Poisson''s ratio [-]')]
 
    type, extends(material_t) :: elastic_t
       real(wp) :: young = 0.0_wp     !< [kPa]
@@ -29,18 +25,21 @@ module material_elastic
       procedure :: saturation
    end type elastic_t
 contains
-   !> The law of a group that was checked against ELASTIC_KEYS. title and fault stay as they are. Young's modulus in
-   !> kPa.
-   subroutine new_elastic(group, law, title, fault)
-      type(group_t), intent(in) :: group
+   !> The law of a group. title and fault stay as they are. Young's modulus in kPa.
+   subroutine new_elastic(k, law, title, fault)
+      type(key_table_t), intent(inout) :: k
       class(material_t), allocatable, intent(out) :: law
       character(*), intent(inout) :: title
       type(fault_t), intent(inout) :: fault
+      real(wp) :: young, poisson
 
       associate (unused => title, never => fault)
       end associate
-      allocate (law, source=isotropic(number_of(ELASTIC_KEYS, group, 'young'), &
-                                      number_of(ELASTIC_KEYS, group, 'poisson')))
+      young = 0.0_wp
+      poisson = -1.0_wp
+      call k%number('young', young, 1.0e-30_wp, UNBOUNDED, 'Young''s modulus [kPa]', REQUIRED)
+      call k%number('poisson', poisson, -0.99_wp, 0.4999_wp, 'Poisson''s ratio [-]', REQUIRED)
+      allocate (law, source=isotropic(young, poisson))
    end subroutine new_elastic
 
    !> The law with Young's modulus [kPa] and Poisson's ratio [-]; saturated unless a retention curve is added. Law of

@@ -4,7 +4,7 @@ module material_mud
    use, intrinsic :: iso_c_binding, only: c_int, c_null_char
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use key_schema, only: key_t, NONE
+   use key_table, only: key_table_t
    use library_tables, only: property_count, property_index, property_name, property_range, range_for, statev_index, &
                              statev_name
    use material_point, only: range_t, material_t, response_t, batch_report_t, remark_t, NAME_LENGTH, NO_PRESET
@@ -16,10 +16,10 @@ module material_mud
    use namelists, only: group_t
    use parameter_groups, only: read_parameters
    use stress_units, only: unit_of_atmosphere, KILOPASCAL
-   use texts, only: from_c, short, whole
+   use texts, only: from_c, short, whole, LENGTH
    implicit none (type, external)
    private
-   public :: mud_t, new_mud, MUD_KEYS
+   public :: mud_t, new_mud
 
    integer, parameter :: BUFFER = 1000
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< A default said in another unit is rounded.
@@ -27,10 +27,6 @@ module material_mud
    character(*), parameter :: GUARDS(10) = [character(NAME_LENGTH) :: 'floor', 'contraction cap', 'softening cap', &
       'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile', &
       'turning points forgotten']
-
-   !> Keys of &mud beside every parameter of the library.
-   type(key_t), parameter :: MUD_KEYS(*) = [ &
-      key_t('mud', 'file', 't', NONE, 0, 0, 'material file; every parameter of the library is a key too')]
 
    type, extends(material_t) :: mud_t
       real(wp), allocatable :: props(:)      !< PROPS as the registry of the library has them.
@@ -60,14 +56,18 @@ module material_mud
 contains
    !> The law of a group: `file`, and parameters of the library by name. title becomes the name of the material;
    !> stresses in the unit of p_atm. A fault (EXIT_INPUT) where the file or a value is wrong; the law is then of no use.
-   subroutine new_mud(group, law, title, fault)
-      type(group_t), intent(in) :: group
+   subroutine new_mud(k, law, title, fault)
+      type(key_table_t), intent(inout) :: k
       class(material_t), allocatable, intent(out) :: law
       character(*), intent(inout) :: title
       type(fault_t), intent(inout) :: fault
+      character(LENGTH) :: file
       type(mud_t) :: mud
 
-      call fill_mud(group, mud, title, fault)
+      file = ''
+      call k%text('file', file, 'material file; every parameter of the library is a key too')
+      if (k%lists) return
+      call fill_mud(k%group, mud, title, fault)
       allocate (law, source=mud)
    end subroutine new_mud
 

@@ -3,10 +3,11 @@
 module material_registry
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, check_group, get_text
-   use material_elastic, only: new_elastic, ELASTIC_KEYS
-   use material_mud, only: new_mud, MUD_KEYS
+   use key_table, only: key_table_t, listing, reading
+   use material_elastic, only: new_elastic
+   use material_mud, only: new_mud
    use material_point, only: material_t
-   use material_umat, only: new_umat, UMAT_KEYS
+   use material_umat, only: new_umat
    use namelists, only: group_t
    use spelling, only: nearest_name
    use texts, only: lower_case, LENGTH
@@ -15,10 +16,11 @@ module material_registry
    public :: law_names, law_keys, is_law, new_material
 
    abstract interface
-      !> Makes a law of a group whose entries were checked against its keys.
-      subroutine new_i(group, law, title, fault)
-         import :: group_t, material_t, fault_t
-         type(group_t), intent(in) :: group
+      !> Declares the keys of a law, and makes it of the group that the table reads; it may be left out of one that
+      !> lists.
+      subroutine new_i(k, law, title, fault)
+         import :: key_table_t, material_t, fault_t
+         type(key_table_t), intent(inout) :: k
          class(material_t), allocatable, intent(out) :: law
          character(*), intent(inout) :: title   !< Name of the material, where the law knows a better one.
          type(fault_t), intent(inout) :: fault
@@ -28,8 +30,7 @@ module material_registry
    type :: law_t
       character(12) :: name
       procedure(new_i), pointer, nopass :: new => null()
-      type(key_t), allocatable :: keys(:)
-      logical :: open = .false.   !< Takes keys that are not in its list, and checks them itself.
+      logical :: open = .false.   !< Takes keys that it does not declare, and checks them itself.
    end type law_t
 
    !> Keys of every law, which mean nothing to it.
@@ -39,20 +40,18 @@ contains
       type(law_t), allocatable, intent(out) :: list(:)
 
       allocate (list(0))
-      call add('mud', new_mud, MUD_KEYS, open=.true.)
-      call add('elastic', new_elastic, ELASTIC_KEYS)
-      call add('umat', new_umat, UMAT_KEYS)
+      call add('mud', new_mud, open=.true.)
+      call add('elastic', new_elastic)
+      call add('umat', new_umat)
    contains
-      subroutine add(name, new, keys, open)
+      subroutine add(name, new, open)
          character(*), intent(in) :: name
          procedure(new_i) :: new
-         type(key_t), intent(in) :: keys(:)
          logical, intent(in), optional :: open
          type(law_t) :: law
 
          law%name = name
          law%new => new
-         law%keys = keys
          if (present(open)) law%open = open
          list = [list, law]
       end subroutine add
@@ -74,14 +73,23 @@ contains
       is_law = any(law_names() == name)
    end function is_law
 
-   !> Keys of a law, of a group of its name, but for those that all laws have. There must be such a law.
-   function law_keys(name) result(keys)
-      character(*), intent(in) :: name
+   !> Keys of a law, as those of a group, but for those that all laws have. There must be such a law.
+   function law_keys(name, group) result(keys)
+      character(*), intent(in) :: name, group
       type(key_t), allocatable :: keys(:)
       type(law_t), allocatable :: list(:)
+      type(key_table_t) :: table
+      class(material_t), allocatable :: unused
+      character(LENGTH) :: title
+      type(fault_t) :: none
+      integer :: place
 
       call list_laws(list)
-      keys = list(findloc(list%name, name, dim=1))%keys
+      table = listing(group)
+      title = ''
+      place = findloc(list%name, name, dim=1)
+      call list(place)%new(table, unused, title, none)
+      call move_alloc(table%keys, keys)
    end function law_keys
 
    !> The law `name` with what a group gives, whatever the name of the group. A fault (EXIT_INPUT) names an unknown law,
@@ -93,6 +101,7 @@ contains
       character(LENGTH), intent(out) :: title   !< Name of the material.
       type(fault_t), intent(inout) :: fault
       type(law_t), allocatable :: list(:)
+      type(key_table_t) :: table
       type(group_t) :: own
       integer :: place, i
 
@@ -113,10 +122,9 @@ contains
             own%entries(own%count) = item
          end associate
       end do
-      list(place)%keys%group = group%name(:12)   ! errors name the group as the file does
-      call check_group(list(place)%keys, own, list(place)%open, fault)
-      own%name = list(place)%name
-      if (fault%code == 0) call list(place)%new(own, law, title, fault)
+      call check_group(law_keys(list(place)%name, trim(group%name)), own, list(place)%open, fault)
+      table = reading(own)
+      if (fault%code == 0) call list(place)%new(table, law, title, fault)
       call get_text(group, 'name', title)
    end subroutine new_material
 end module material_registry

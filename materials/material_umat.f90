@@ -7,16 +7,16 @@ module material_umat
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use files, only: folder_of
-   use key_schema, only: key_t, text_of, texts_of, number_of, numbers_of, word_is, line_of, REQUIRED, NONE, UNBOUNDED
+   use key_schema, only: line_of, REQUIRED, UNBOUNDED
+   use key_table, only: key_table_t
    use kinds, only: wp
    use material_point, only: material_t, response_t, batch_report_t, remark_t, swollen, NAME_LENGTH
    use retention_curves, only: saturation_t
-   use namelists, only: group_t
-   use texts, only: whole, short
+   use texts, only: whole, short, LENGTH
    use umat_library, only: umat_i, load_umat, CMNAME_LENGTH
    implicit none (type, external)
    private
-   public :: umat_t, new_umat, UMAT_KEYS, UMAT_REFUSES, UMAT_NOT_FINITE
+   public :: umat_t, new_umat, UMAT_REFUSES, UMAT_NOT_FINITE
 
    !> Codes of a failure.
    integer, parameter :: UMAT_REFUSES = 1      !< The UMAT set PNEWDT below 1.
@@ -28,29 +28,10 @@ module material_umat
    real(wp), parameter :: UNIT(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
                                                 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
    real(wp), parameter :: STEP = 1.0_wp          !< DTIME of an update.
+   integer, parameter :: MOST = 10000            !< STATEV that a law may have.
    integer, parameter :: OWN = 9                 !< Number of state variables after those of the UMAT.
    integer, parameter :: OWN_STRAIN = 0          !< Place before the six strains since the start, after the UMAT's.
    integer, parameter :: OWN_COUNT = 7, OWN_E = 8, OWN_S_W = 9   !< Places: updates, void ratio, saturation.
-
-   type(key_t), parameter :: UMAT_KEYS(*) = [ &
-      key_t('umat', 'library', 't', REQUIRED, 0, 0, &
-            'shared library: path relative to this file, or a name that the system finds'), &
-      key_t('umat', 'symbol', 't', 'umat_', 0, 0, 'symbol of the UMAT in the library'), &
-      key_t('umat', 'props', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'PROPS, in their order'), &
-      key_t('umat', 'nstatv', 'i', '0', 0, 10000, 'number of STATEV; they start as zeros'), &
-      key_t('umat', 'state_names', 'T', NONE, 0, 0, 'names of STATEV, in their order'), &
-      key_t('umat', 'shear_order', 'w', 'abaqus', 0, 0, 'abaqus: 12, 13, 23; kratos: 12, 23, 13', 'abaqus|kratos'), &
-      key_t('umat', 'stress', 'w', 'effective', 0, 0, &
-            'stress that the UMAT knows; total: less the air pressure, sigma'' + S_w p_c', 'effective|total'), &
-      key_t('umat', 'components', 'i', '6', 4, 6, 'NTENS: 6, or 4 for a UMAT of axisymmetry and plane strain'), &
-      key_t('umat', 'tangent', 'w', 'approximate', 0, 0, &
-            'consistent: DDSDDE is the derivative of the update itself', 'approximate|consistent'), &
-      key_t('umat', 'void_ratio_at', 'i', '0', 0, 10000, 'place in STATEV of the void ratio; 0: kept outside STATEV'), &
-      key_t('umat', 'saturation_at', 'i', '0', 0, 10000, 'place in STATEV of S_w; 0: from the retention curve'), &
-      key_t('umat', 'saturation_slopes_at', 'i', '0', 0, 10000, &
-            'with saturation_at: place of dS_w/dp_c, before that of dS_w/d eps_v (expansion positive)'), &
-      key_t('umat', 'suction_slope_at', 'i', '0', 0, 10000, &
-            'place in STATEV of the first of NTENS d STRESS/d p_c; 0: none')]
 
    type, extends(material_t) :: umat_t
       procedure(umat_i), pointer, nopass :: umat => null()
@@ -73,48 +54,60 @@ module material_umat
       procedure :: change_over_step
    end type umat_t
 contains
-   !> The law of a group that was checked against UMAT_KEYS. title stays as it is; stresses in the unit of the UMAT. A
-   !> fault (EXIT_INPUT) where values contradict each other or the library cannot be loaded; the law is then of no use.
-   subroutine new_umat(group, law, title, fault)
-      type(group_t), intent(in) :: group
+   !> The law of a group. title stays as it is; stresses in the unit of the UMAT. A fault (EXIT_INPUT) where values
+   !> contradict each other or the library cannot be loaded; the law is then of no use.
+   subroutine new_umat(k, law, title, fault)
+      type(key_table_t), intent(inout) :: k
       class(material_t), allocatable, intent(out) :: law
       character(*), intent(inout) :: title
       type(fault_t), intent(inout) :: fault
       type(umat_t) :: umat
 
-      call fill_umat(group, title, umat, fault)
+      call fill_umat(k, title, umat, fault)
       allocate (law, source=umat)
    end subroutine new_umat
 
-   subroutine fill_umat(group, title, law, fault)
-      type(group_t), intent(in) :: group
+   subroutine fill_umat(k, title, law, fault)
+      type(key_table_t), intent(inout) :: k
       character(*), intent(in) :: title
       type(umat_t), intent(out) :: law
       type(fault_t), intent(inout) :: fault
-      character(NAME_LENGTH), allocatable :: names(:)
+      character(LENGTH), allocatable :: names(:)
+      logical :: as_kratos
       integer :: i
 
       law%title = title
-      law%library = text_of(UMAT_KEYS, group, 'library')
-      law%symbol = text_of(UMAT_KEYS, group, 'symbol')
-      law%props = numbers_of(group, 'props')
-      law%n_statv = integer_of('nstatv')
-      law%components = integer_of('components')
-      law%void_ratio_at = integer_of('void_ratio_at')
-      law%saturation_at = integer_of('saturation_at')
-      law%saturation_slopes_at = integer_of('saturation_slopes_at')
-      law%suction_slope_at = integer_of('suction_slope_at')
-      if (word_is(UMAT_KEYS, group, 'shear_order', 'kratos')) law%order = KRATOS
-      law%total = word_is(UMAT_KEYS, group, 'stress', 'total')
+      law%symbol = 'umat_'
+      as_kratos = .false.
+      call k%text('library', law%library, 'shared library: path relative to this file, or a name that the system '// &
+                  'finds', REQUIRED)
+      call k%text('symbol', law%symbol, 'symbol of the UMAT in the library')
+      call k%numbers('props', law%props, -UNBOUNDED, UNBOUNDED, 'PROPS, in their order')
+      call k%whole('nstatv', law%n_statv, 0, MOST, 'number of STATEV; they start as zeros')
+      call k%texts('state_names', names, 'names of STATEV, in their order')
+      call k%flag('shear_order', as_kratos, 'abaqus|kratos', 'kratos', 'abaqus: 12, 13, 23; kratos: 12, 23, 13')
+      call k%flag('stress', law%total, 'effective|total', 'total', &
+                  'stress that the UMAT knows; total: less the air pressure, sigma'' + S_w p_c')
+      call k%whole('components', law%components, 4, 6, 'NTENS: 6, or 4 for a UMAT of axisymmetry and plane strain')
+      call k%flag('tangent', law%exact_tangent, 'approximate|consistent', 'consistent', &
+                  'consistent: DDSDDE is the derivative of the update itself')
+      call k%whole('void_ratio_at', law%void_ratio_at, 0, MOST, &
+                   'place in STATEV of the void ratio; 0: kept outside STATEV')
+      call k%whole('saturation_at', law%saturation_at, 0, MOST, &
+                   'place in STATEV of S_w; 0: from the retention curve')
+      call k%whole('saturation_slopes_at', law%saturation_slopes_at, 0, MOST, &
+                   'with saturation_at: place of dS_w/dp_c, before that of dS_w/d eps_v (expansion positive)')
+      call k%whole('suction_slope_at', law%suction_slope_at, 0, MOST, &
+                   'place in STATEV of the first of NTENS d STRESS/d p_c; 0: none')
+      if (k%lists) return
+      if (as_kratos) law%order = KRATOS
       law%has_retention = law%saturation_at > 0
       law%saturation_is_state = law%has_retention
-      law%exact_tangent = word_is(UMAT_KEYS, group, 'tangent', 'consistent')
       if (law%components == 5) call refuse('components', 'is 4 or 6.')
-      call check_place('void_ratio_at', 1)
-      call check_place('saturation_at', 1)
-      call check_place('saturation_slopes_at', 2)
-      call check_place('suction_slope_at', law%components)
-      names = short_names(texts_of(group, 'state_names'))
+      call check_place('void_ratio_at', law%void_ratio_at, 1)
+      call check_place('saturation_at', law%saturation_at, 1)
+      call check_place('saturation_slopes_at', law%saturation_slopes_at, 2)
+      call check_place('suction_slope_at', law%suction_slope_at, law%components)
       if (size(names) > law%n_statv) call refuse('state_names', 'are more than nstatv = '//whole(law%n_statv)//'.')
       if (fault%code /= 0) return
 
@@ -123,41 +116,28 @@ contains
       do i = 1, law%n_statv
          law%state_names(i) = 'statev_'//whole(i)
       end do
-      law%state_names(:size(names)) = names
+      law%state_names(:size(names)) = names(:)(:NAME_LENGTH)
       law%state_names(law%n_statv + 1:) = [character(NAME_LENGTH) :: 'strain_11', 'strain_22', 'strain_33', &
                                            'strain_12', 'strain_13', 'strain_23', 'updates', 'kept_void_ratio', &
                                            'kept_saturation']
-      call load(group%file, law, fault)
-      if (fault%code /= 0) fault%text = at_line(group%file, line_of(group, 'library'))//fault%text
+      call load(k%group%file, law, fault)
+      if (fault%code /= 0) fault%text = at_line(k%group%file, line_of(k%group, 'library'))//fault%text
    contains
-      integer function integer_of(key)
+      subroutine check_place(key, first, room)
          character(*), intent(in) :: key
+         integer, intent(in) :: first, room   !< Places from the first on; 0: none.
 
-         integer_of = nint(number_of(UMAT_KEYS, group, key))
-      end function integer_of
-
-      subroutine check_place(key, room)
-         character(*), intent(in) :: key
-         integer, intent(in) :: room   !< Places from it on.
-
-         if (integer_of(key) == 0) return
-         if (integer_of(key) + room - 1 > law%n_statv) call refuse(key, '= '//whole(integer_of(key))//' needs '// &
-            whole(integer_of(key) + room - 1)//' STATEV, nstatv is '//whole(law%n_statv)//'.')
+         if (first > 0 .and. first + room - 1 > law%n_statv) call refuse(key, '= '//whole(first)//' needs '// &
+            whole(first + room - 1)//' STATEV, nstatv is '//whole(law%n_statv)//'.')
       end subroutine check_place
 
       subroutine refuse(key, why)
          character(*), intent(in) :: key, why
 
-         if (fault%code == 0) call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, key))//key//' '//why)
+         if (fault%code == 0) call raise(fault, EXIT_INPUT, at_line(k%group%file, line_of(k%group, key))// &
+                                           key//' '//why)
       end subroutine refuse
    end subroutine fill_umat
-
-   pure function short_names(long) result(names)
-      character(*), intent(in) :: long(:)
-      character(NAME_LENGTH) :: names(size(long))
-
-      names = long(:)(:NAME_LENGTH)
-   end function short_names
 
    !> Looks beside the file that names the library, and if it is not there, where the system keeps libraries.
    subroutine load(file, law, fault)

@@ -5,12 +5,12 @@ module parameter_groups
    use kinds, only: wp
    use mud_interface, only: mud_default_props, mud_validate_props
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: lower_case, short, whole, read_number, word_place, from_c, LENGTH
-   use namelists, only: group_t, entry_t, read_groups, find_entry
-   use spelling, only: nearest_name
+   use key_schema, only: key_t, check_group, get_number, NONE, UNBOUNDED
+   use texts, only: lower_case, short, whole, read_number, word_place, from_c
+   use namelists, only: group_t, read_groups, find_entry
    use library_tables, only: property_count, property_index, property_name, property_unit, property_meaning, &
-                             property_option, range_for
-   use stress_units, only: unit_of_atmosphere, in_unit
+                             property_option, option_words, range_for
+   use stress_units, only: stress_unit_t, unit_of_atmosphere, in_unit
    implicit none (type, external)
    private
    public :: read_parameters
@@ -38,7 +38,7 @@ contains
       character(:), allocatable :: path
       character(len(doubt)) :: doubt_of_file
       real(wp) :: ranges(4)
-      integer :: place
+      integer :: place, i
 
       title = 'defaults of the library'
       doubt = ''
@@ -76,20 +76,12 @@ contains
       doubt_of_file = doubt
       call apply_group(group, props, title, doubt, ranges, fault)
       if (present(tested)) tested = ranges
-      if (place > 0 .and. .not. has_parameters(group)) doubt = doubt_of_file
-   end subroutine read_parameters
-
-   !> Whether a group has entries beside its texts.
-   pure logical function has_parameters(group) result(has)
-      type(group_t), intent(in) :: group
-      integer :: i
-
-      has = .false.
+      if (place == 0) return
       do i = 1, group%count
-         has = has .or. .not. (any(TEXT_KEYS == lower_case(group%entries(i)%key)) .or. &
-                               any(TESTED_KEYS == lower_case(group%entries(i)%key)))
+         if (property_index(group%entries(i)%key) > 0) return
       end do
-   end function has_parameters
+      doubt = doubt_of_file
+   end subroutine read_parameters
 
    !> Folder of a file, with its closing slash; empty if the file is in the present one.
    pure function folder_of(file) result(folder)
@@ -108,26 +100,30 @@ contains
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: sentence
       character(BUFFER) :: text
-      integer :: i, line, first, at
-      logical :: allowed
+      real(wp) :: value
+      integer :: i, line, first, at, place
+      logical :: allowed, found
 
       doubt = ''
+      ! The unit of the limits is known when p_atm is, wherever it stands.
+      place = property_index('p_atm')
+      call get_number(group, 'p_atm', value, found)
+      if (found) props(place) = value
+      call check_group(keys_of_parameters(props, group%name(:12)), group, .false., fault)
+      if (fault%code /= 0) return
       do i = 1, group%count
          associate (item => group%entries(i))
-            if (any(TEXT_KEYS == lower_case(item%key))) then
-               if (item%count /= 1) then
-                  call raise(fault, EXIT_INPUT, at_line(group%file, item%line)//trim(item%key)// &
-                             ' is one text; put it in quotes.')
-               else if (lower_case(item%key) == 'name') then
-                  title = item%values(1)
-               end if
-            else if (any(TESTED_KEYS == lower_case(item%key))) then
-               call set_tested(group%file, item, tested, fault)
-            else
-               call set_property(group%file, item, props, fault)
+            place = property_index(item%key)
+            if (place > 0) then
+               call read_number(item%values(1), props(place), found)
+               if (.not. found) call property_option(place, item%values(1), props(place), found)
+            else if (lower_case(item%key) == 'name') then
+               title = item%values(1)
             end if
          end associate
-         if (fault%code /= 0) return
+      end do
+      do i = 1, size(TESTED_KEYS)
+         call get_number(group, trim(TESTED_KEYS(i)), tested(i), found)
       end do
 
       if (tested(1) > tested(2) .or. tested(3) > tested(4)) then
@@ -135,12 +131,6 @@ contains
                     'tested_e_max and tested_p_max.')
          return
       end if
-
-      ! the unit of the limits is known when p_atm is, which may stand behind them
-      do i = 1, group%count
-         call check_range(group%file, group%entries(i), props, fault)
-         if (fault%code /= 0) return
-      end do
 
       text = c_null_char
       allowed = mud_validate_props(props, size(props), text, BUFFER) == 0
@@ -161,95 +151,26 @@ contains
       end if
    end subroutine apply_group
 
-   subroutine set_tested(file, item, tested, fault)
-      character(*), intent(in) :: file
-      type(entry_t), intent(in) :: item
-      real(wp), intent(inout) :: tested(4)
-      type(fault_t), intent(inout) :: fault
-      real(wp) :: value
-      logical :: good
-
-      good = item%count == 1
-      if (good) call read_number(item%values(1), value, good)
-      if (good) good = value >= 0.0_wp
-      if (good) tested(findloc(TESTED_KEYS, lower_case(item%key), dim=1)) = value
-      if (.not. good) call raise(fault, EXIT_INPUT, at_line(file, item%line)//trim(item%key)//' is one number of 0 '// &
-                                 'or more: the range of void ratio [-] or stress of the tests behind the material.')
-   end subroutine set_tested
-
-   subroutine set_property(file, item, props, fault)
-      character(*), intent(in) :: file
-      type(entry_t), intent(in) :: item
-      real(wp), intent(inout) :: props(:)
-      type(fault_t), intent(inout) :: fault
-      real(wp) :: value
-      integer :: place, near
-      logical :: good
-
-      place = property_index(item%key)
-      if (place < 1) then
-         near = nearest_property(item%key)
-         call raise(fault, EXIT_INPUT, at_line(file, item%line)//'there is no parameter '//trim(item%key)// &
-                    '; the nearest is '// &
-                    property_name(near)//' ('//described_range(near, props)//').')
-         return
-      end if
-      if (item%count /= 1) then
-         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' takes one value, '// &
-                    whole(item%count)//' are given ('//described_range(place, props)//').')
-         return
-      end if
-      call read_number(item%values(1), value, good)
-      if (.not. good) call property_option(place, item%values(1), value, good)
-      if (.not. good) then
-         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
-                    ' is neither a number nor one of its words ('//described_range(place, props)//').')
-         return
-      end if
-      props(place) = value
-   end subroutine set_property
-
-   !> Refuses a parameter outside its range in the unit of p_atm.
-   subroutine check_range(file, item, props, fault)
-      character(*), intent(in) :: file
-      type(entry_t), intent(in) :: item
+   !> Keys of a group of parameters, with their limits in the unit of stress that p_atm tells.
+   function keys_of_parameters(props, group) result(keys)
       real(wp), intent(in) :: props(:)
-      type(fault_t), intent(inout) :: fault
+      character(*), intent(in) :: group
+      type(key_t), allocatable :: keys(:)
+      character(*), parameter :: TESTED = 'range of void ratio [-] or stress of the tests behind the material'
+      character(:), allocatable :: unit
+      type(stress_unit_t) :: stress
       real(wp) :: lower, upper, preset
-      integer :: place
-
-      place = property_index(item%key)
-      if (place < 1) return
-      call range_for(props, place, lower, upper, preset)
-      if (props(place) < lower .or. props(place) > upper) &
-         call raise(fault, EXIT_INPUT, at_line(file, item%line)//property_name(place)//' = '//trim(item%values(1))// &
-                    ' is outside its range ('//described_range(place, props)//').')
-   end subroutine check_range
-
-   !> "from 0.001 to 10000, default 12: kinematic hardening constant, eq. (13)"
-   function described_range(place, props) result(text)
-      integer, intent(in) :: place
-      real(wp), intent(in) :: props(:)   !< PROPS, of which p_atm tells the unit.
-      character(:), allocatable :: text
-      real(wp) :: lower, upper, preset
-
-      call range_for(props, place, lower, upper, preset)
-      text = 'from '//short(lower)//' to '//short(upper)
-      if (property_unit(place) /= '1') text = text//' '//in_unit(property_unit(place), &
-                                                         unit_of_atmosphere(props(property_index('p_atm'))))
-      text = text//', default '//short(preset)//': '//property_meaning(place)
-   end function described_range
-
-   !> Place of the parameter whose name looks most like a word.
-   integer function nearest_property(word) result(best)
-      character(*), intent(in) :: word
-      character(LENGTH), allocatable :: names(:)
       integer :: i
 
-      allocate (names(property_count()))
-      do i = 1, size(names)
-         names(i) = property_name(i)
+      stress = unit_of_atmosphere(props(property_index('p_atm')))
+      keys = [(key_t(group, TEXT_KEYS(i), 't', NONE, 0, 0, 'a text in quotes'), i=1, size(TEXT_KEYS)), &
+              (key_t(group, TESTED_KEYS(i), 'n', NONE, 0, UNBOUNDED, TESTED), i=1, size(TESTED_KEYS))]
+      do i = 1, property_count()
+         call range_for(props, i, lower, upper, preset)
+         unit = ''
+         if (property_unit(i) /= '1') unit = in_unit(property_unit(i), stress)
+         keys = [keys, key_t(group, property_name(i), 'n', short(preset), lower, upper, &
+                             property_meaning(i)//'; default '//short(preset), option_words(i), unit)]
       end do
-      best = nearest_name(word, names)
-   end function nearest_property
+   end function keys_of_parameters
 end module parameter_groups

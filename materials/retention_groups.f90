@@ -3,130 +3,134 @@
 module retention_groups
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use key_schema, only: key_t, number_of, numbers_of, text_of, given, line_of, NONE, UNBOUNDED
+   use key_schema, only: check_group, line_of, UNBOUNDED
+   use key_table, only: key_table_t, listing, reading
    use material_point, only: material_t
    use namelists, only: group_t
    use number_pairs, only: read_pairs
    use retention_curves, only: retention_t, bilogarithmic_t, van_genuchten_t, power_t, table_t, &
                                saturated_t
-   use texts, only: lower_case, short, whole
+   use texts, only: short, whole, LENGTH
    implicit none (type, external)
    private
-   public :: new_retention, give_retention, RETENTION_KEYS
+   public :: new_retention, give_retention
 
-   real(wp), parameter :: SMALLEST = 1.0e-30_wp
-   type(key_t), parameter :: RETENTION_KEYS(*) = [ &
-      key_t('retention', 'law', 'w', 'bilogarithmic', 0, 0, 'see host/SCENE.md', &
-            'bilogarithmic|van_genuchten|power|table|saturated'), &
-      key_t('retention', 'p_a', 'n', '5.0', SMALLEST, UNBOUNDED, 'air entry of the bilogarithmic law [kPa]', &
-            acts='law=bilogarithmic'), &
-      key_t('retention', 'alpha', 'n', NONE, SMALLEST, UNBOUNDED, 'van Genuchten''s alpha [1/kPa]', &
-            acts='law=van_genuchten'), &
-      key_t('retention', 'n', 'n', '2.0', 0.01_wp, 100, 'exponent n, of van Genuchten above 1 [-]', &
-            acts='law=bilogarithmic|van_genuchten'), &
-      key_t('retention', 'm', 'n', '1.0', 0.001_wp, 100, 'exponent m; of van Genuchten by default 1 - 1/n [-]', &
-            acts='law=bilogarithmic|van_genuchten'), &
-      key_t('retention', 'omega', 'n', '2.0', 0, 100, 'exponent of the void ratio in the bilogarithmic law [-]', &
-            acts='law=bilogarithmic'), &
-      key_t('retention', 's_max', 'n', '1.0', 0, 1, 'largest degree of saturation [-]', &
-            acts='law=bilogarithmic|van_genuchten'), &
-      key_t('retention', 's_min', 'n', '0.0', 0, 1, 'least degree of saturation [-]', &
-            acts='law=bilogarithmic|van_genuchten|power'), &
-      key_t('retention', 'a', 'n', '0.0', 0, UNBOUNDED, 'factor of the power law S = 1 - a p_c**b', acts='law=power'), &
-      key_t('retention', 'b', 'n', '1.0', 1, 100, 'exponent b of the power law [-]', acts='law=power'), &
-      key_t('retention', 'suction', 'N', NONE, -UNBOUNDED, UNBOUNDED, 'table: suctions [kPa], ascending', &
-            acts='law=table -file'), &
-      key_t('retention', 'saturation', 'N', NONE, 0, 1, 'table: degrees of saturation [-]', acts='law=table -file'), &
-      key_t('retention', 'file', 't', NONE, 0, 0, 'table: text file with a suction and a saturation a line', &
-            acts='law=table')]
+   real(wp), parameter :: SMALLEST = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp, LARGE = 100.0_wp
+   !> Laws, in the order of their words.
+   integer, parameter :: BILOGARITHMIC = 1, VAN_GENUCHTEN = 2, POWER = 3, OF_TABLE = 4
 contains
-   !> Reads a curve and gives it to a law that has no retention curve of its own. Suctions [kPa]. A fault (EXIT_INPUT)
-   !> where the law has its own, or the values contradict each other.
+   !> Checks a group, reads its curve and gives it to a law that has no retention curve of its own. Suctions [kPa]. A
+   !> fault (EXIT_INPUT) where the law has its own, or what check_group and new_retention refuse.
    subroutine give_retention(group, law, fault)
-      type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
+      type(group_t), intent(in) :: group
       class(material_t), intent(inout) :: law
       type(fault_t), intent(inout) :: fault
+      type(key_table_t) :: table
 
+      table = listing(trim(group%name))
+      call new_retention(table, law%curve, fault)
+      call check_group(table%keys, group, .false., fault)
+      if (fault%code /= 0) return
       if (law%has_retention) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)//' goes with a law '// &
                     'that has no retention of its own; remove it: a point has one saturation.')
          return
       end if
-      call new_retention(group, law%curve, fault)
+      table = reading(group)
+      call new_retention(table, law%curve, fault)
    end subroutine give_retention
 
-   !> Makes the curve of a group; a fault where its values contradict each other. Suctions [kPa]; the fault is
-   !> EXIT_INPUT with file and line. Laws of retention_curves.
-   subroutine new_retention(group, curve, fault)
-      type(group_t), intent(in) :: group   !< Checked against RETENTION_KEYS.
+   !> Declares the keys of a curve and makes it of a group that was checked; a fault where its values contradict each
+   !> other. Suctions [kPa]; the fault is EXIT_INPUT with file and line. Laws of retention_curves.
+   subroutine new_retention(k, curve, fault)
+      type(key_table_t), intent(inout) :: k
       class(retention_t), allocatable, intent(out) :: curve
       type(fault_t), intent(inout) :: fault
+      character(*), parameter :: SHAPED = 'law=bilogarithmic|van_genuchten'
+      type(bilogarithmic_t) :: own
+      type(van_genuchten_t) :: other
+      type(power_t) :: falling
+      type(table_t) :: table
+      character(LENGTH) :: file
+      integer :: law
 
-      select case (lower_case(text_of(RETENTION_KEYS, group, 'law')))
-      case ('bilogarithmic')
-         allocate (curve, source=bilogarithmic_t(number('p_a'), number('n'), number('m'), number('omega'), &
-                                                 number('s_max'), number('s_min')))
-      case ('van_genuchten')
-         call new_van_genuchten(group, curve, fault)
-      case ('power')
-         allocate (curve, source=power_t(number('a'), number('b'), number('s_min')))
-      case ('table')
-         call new_table(group, curve, fault)
+      law = BILOGARITHMIC
+      other%alpha = ZERO   ! has no default
+      file = ''
+      call k%word('law', law, 'bilogarithmic|van_genuchten|power|table|saturated', 'see host/SCENE.md')
+      call k%number('p_a', own%p_a, SMALLEST, UNBOUNDED, 'air entry of the bilogarithmic law [kPa]', &
+                    'law=bilogarithmic', shown='5.0')
+      call k%number('alpha', other%alpha, SMALLEST, UNBOUNDED, 'van Genuchten''s alpha [1/kPa]', 'law=van_genuchten')
+      call k%number('n', own%n, 0.01_wp, LARGE, 'exponent n, of van Genuchten above 1 [-]', SHAPED, shown='2.0')
+      call k%number('m', own%m, 0.001_wp, LARGE, 'exponent m; of van Genuchten by default 1 - 1/n [-]', &
+                    SHAPED, shown='1.0')
+      call k%number('omega', own%omega, ZERO, LARGE, 'exponent of the void ratio in the bilogarithmic law [-]', &
+                    'law=bilogarithmic', shown='2.0')
+      call k%number('s_max', own%s_max, ZERO, ONE, 'largest degree of saturation [-]', SHAPED, shown='1.0')
+      call k%number('s_min', own%s_min, ZERO, ONE, 'least degree of saturation [-]', SHAPED//'|power', shown='0.0')
+      call k%number('a', falling%a, ZERO, UNBOUNDED, 'factor of the power law S = 1 - a p_c**b', &
+                    'law=power', shown='0.0')
+      call k%number('b', falling%b, ONE, LARGE, 'exponent b of the power law [-]', 'law=power', shown='1.0')
+      call k%numbers('suction', table%p_c, -UNBOUNDED, UNBOUNDED, 'table: suctions [kPa], ascending', &
+                     'law=table -file')
+      call k%numbers('saturation', table%s, ZERO, ONE, 'table: degrees of saturation [-]', 'law=table -file')
+      call k%text('file', file, 'table: text file with a suction and a saturation a line', 'law=table')
+      if (k%lists) return
+      select case (law)
+      case (BILOGARITHMIC)
+         allocate (curve, source=own)
+      case (VAN_GENUCHTEN)
+         other%n = own%n
+         other%m = merge(own%m, ONE - ONE/own%n, k%given('m'))
+         other%s_max = own%s_max
+         other%s_min = own%s_min
+         call check_van_genuchten(k, other, fault)
+         allocate (curve, source=other)
+      case (POWER)
+         falling%s_min = own%s_min
+         allocate (curve, source=falling)
+      case (OF_TABLE)
+         call fill_table(k, trim(file), table, fault)
+         allocate (curve, source=table)
       case default
          allocate (curve, source=saturated_t())
       end select
-   contains
-      real(wp) function number(name)
-         character(*), intent(in) :: name
-
-         number = number_of(RETENTION_KEYS, group, name)
-      end function number
    end subroutine new_retention
 
-   subroutine new_van_genuchten(group, curve, fault)
-      type(group_t), intent(in) :: group
-      class(retention_t), allocatable, intent(out) :: curve
+   subroutine check_van_genuchten(k, law, fault)
+      type(key_table_t), intent(in) :: k
+      type(van_genuchten_t), intent(in) :: law
       type(fault_t), intent(inout) :: fault
-      type(van_genuchten_t) :: law
 
-      law%alpha = number_of(RETENTION_KEYS, group, 'alpha')
-      law%n = number_of(RETENTION_KEYS, group, 'n')
-      law%m = 1.0_wp - 1.0_wp/law%n
-      if (given(group, 'm')) law%m = number_of(RETENTION_KEYS, group, 'm')
-      law%s_max = number_of(RETENTION_KEYS, group, 's_max')
-      law%s_min = number_of(RETENTION_KEYS, group, 's_min')
-      if (.not. given(group, 'alpha')) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'law = ''van_genuchten'' needs alpha '// &
-                    '[1/kPa], about one over the air entry.')
-      else if (.not. law%n > 1.0_wp) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'n'))//'n = '//short(law%n)//' of van '// &
-                    'Genuchten''s curve must lie above 1: below it the slope at zero suction is not finite.')
-      else if (.not. law%s_max > law%s_min) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'s_max must be larger than s_min.')
-      end if
-      allocate (curve, source=law)
-   end subroutine new_van_genuchten
+      associate (group => k%group)
+         if (.not. k%given('alpha')) then
+            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'law = ''van_genuchten'' needs alpha '// &
+                       '[1/kPa], about one over the air entry.')
+         else if (.not. law%n > ONE) then
+            call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'n'))//'n = '//short(law%n)//' of '// &
+                       'van Genuchten''s curve must lie above 1: below it the slope at zero suction is not finite.')
+         else if (.not. law%s_max > law%s_min) then
+            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'s_max must be larger than s_min.')
+         end if
+      end associate
+   end subroutine check_van_genuchten
 
    !> Pairs from the keys, or from a file: as many as there are.
-   subroutine new_table(group, curve, fault)
-      type(group_t), intent(in) :: group
-      class(retention_t), allocatable, intent(out) :: curve
+   subroutine fill_table(k, file, table, fault)
+      type(key_table_t), intent(in) :: k
+      character(*), intent(in) :: file
+      type(table_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
-      type(table_t) :: table
       character(:), allocatable :: place
 
-      place = at_line(group%file, group%line)
-      if (given(group, 'file')) then
-         call read_pairs(text_of(RETENTION_KEYS, group, 'file'), trim(group%file), line_of(group, 'file'), &
-                         'a suction and a saturation', table%p_c, table%s, fault)
-         place = at_line(group%file, line_of(group, 'file'))//trim(text_of(RETENTION_KEYS, group, 'file'))//': '
-      else
-         table%p_c = numbers_of(group, 'suction')
-         table%s = numbers_of(group, 'saturation')
+      place = at_line(k%group%file, k%group%line)
+      if (k%given('file')) then
+         call read_pairs(file, trim(k%group%file), line_of(k%group, 'file'), 'a suction and a saturation', table%p_c, &
+                         table%s, fault)
+         place = at_line(k%group%file, line_of(k%group, 'file'))//file//': '
       end if
       if (fault%code == 0) call check_table(table, place, fault)
-      allocate (curve, source=table)
-   end subroutine new_table
+   end subroutine fill_table
 
    subroutine check_table(table, place, fault)
       type(table_t), intent(in) :: table

@@ -4,20 +4,21 @@ module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use texts, only: short, whole, LENGTH
-   use namelists, only: group_t, read_groups, groups_of_text, set_entry, find_entry
-   use key_schema, only: check_entries, describe_key, get_text, get_number, get_numbers, given, line_of
-   use triax_keys, only: CASE_KEYS, check_keys
+   use namelists, only: group_t, read_groups, groups_of_text, set_entry
+   use key_schema, only: key_t, check_group, get_text, line_of, UNBOUNDED
+   use key_table, only: key_table_t, listing, reading
    use triax_control, only: CONTROL_TOLERANCE
    use triax_stage, only: test_stage_t
+   use stress_units, only: stress_unit_t, KILOPASCAL
    use triax_stage_reader, only: read_stage
    use material_point, only: material_t
    use material_registry, only: new_material
-   use retention_groups, only: give_retention, RETENTION_KEYS
+   use retention_groups, only: give_retention
    use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, saturation, &
                           AXIAL, RADIAL
    implicit none (type, external)
    private
-   public :: case_t, read_case, make_case
+   public :: case_t, read_case, make_case, case_keys
 
    !> A test.
    type :: case_t
@@ -30,7 +31,19 @@ module triax_case
       integer :: max_updates = huge(0)   !< The test stops after so many updates of the material.
    end type case_t
 
+   !> Values of &initial as the group gives them.
+   type :: initial_t
+      real(wp) :: p = 0.0_wp, sigma_a = 0.0_wp, sigma_r = 0.0_wp   !< Effective or net stress [unit of the law].
+      real(wp) :: suction = 0.0_wp                                 !< [unit of stress of the law]
+      real(wp) :: void_ratio = 0.0_wp, s_w = 0.0_wp
+      real(wp), allocatable :: six(:), state(:)   !< All stresses, or all state variables. (none or all)
+   end type initial_t
+
    real(wp), parameter :: ATMOSPHERE = 101.325_wp   !< [kPa]
+   !> [kPa] Stress of a start: grains of sand crush long before.
+   real(wp), parameter :: LEAST = 1.0e-6_wp, MOST = 5.0e4_wp
+   real(wp), parameter :: ZERO = 0.0_wp, ONE = 1.0_wp
+   character(*), parameter :: KPA = KILOPASCAL%name
    real(wp), parameter :: LIFTED = 1.0e-12_wp   !< Far above rounding: the library has raised the stress to p_min.
    real(wp), parameter :: ROUNDED = 1.0e-9_wp   !< Share of a stress by which a net stress may fall below zero.
 
@@ -92,9 +105,8 @@ contains
       character(*), intent(in) :: file   !< For messages, and for the name of the test.
       type(case_t), intent(out) :: test
       type(fault_t), intent(inout) :: fault
+      type(key_table_t) :: table
       integer :: i, of_case, of_material, of_retention, of_initial, n_stages
-      real(wp) :: number
-      logical :: found
 
       test%file = file
       of_case = 0
@@ -110,7 +122,6 @@ contains
             call only_once(file, groups, i, of_material, fault)
          case ('retention')
             call only_once(file, groups, i, of_retention, fault)
-            if (fault%code == 0) call check_entries(RETENTION_KEYS, groups(i), .false., fault)
          case ('initial')
             call only_once(file, groups, i, of_initial, fault)
          case ('stage')
@@ -137,27 +148,78 @@ contains
       i = index(test%name, '.', back=.true.)
       if (i > 1) test%name = test%name(:i - 1)
       if (of_case > 0) then
-         call get_text(groups(of_case), 'name', test%name)
-         call get_text(groups(of_case), 'title', test%title)
-         call get_number(groups(of_case), 'control_tolerance', test%control_tolerance, found)
-         call get_number(groups(of_case), 'accuracy', test%accuracy, found)
-         number = 0.0_wp
-         call get_number(groups(of_case), 'max_updates', number, found)
-         if (found) test%max_updates = nint(number)
+         table = of_unit(reading(groups(of_case)), test%soil%law%unit)
+         call read_settings(table, test)
       end if
-
-      call read_initial(groups(of_initial), test%soil, test%start, fault)
-      if (fault%code == 0) call read_air(groups(of_initial), test%soil, test%start%p_a, fault)
+      table = of_unit(reading(groups(of_initial)), test%soil%law%unit)
+      call read_initial(table, test%soil, test%start, fault)
       if (fault%code /= 0) return
       allocate (test%stages(n_stages))
       n_stages = 0
       do i = 1, size(groups)
          if (groups(i)%name /= 'stage') cycle
          n_stages = n_stages + 1
-         call read_stage(groups(i), test%soil%law%unit, test%stages(n_stages), fault)
+         table = of_unit(reading(groups(i)), test%soil%law%unit)
+         call read_stage(table, test%stages(n_stages), fault)
          if (fault%code /= 0) return
       end do
    end subroutine make_case
+
+   !> The keys of a case but for those of materials and curves, with limits in a unit of stress.
+   function case_keys(unit) result(keys)
+      type(stress_unit_t), intent(in) :: unit
+      type(key_t), allocatable :: keys(:)
+      type(key_table_t) :: tables(3)
+      type(case_t) :: nothing
+      type(test_stage_t) :: no_stage
+      type(fault_t) :: none
+
+      tables = [of_unit(listing('case'), unit), of_unit(listing('initial'), unit), of_unit(listing('stage'), unit)]
+      call read_settings(tables(1), nothing)
+      call read_initial(tables(2), nothing%soil, nothing%start, none)
+      call read_stage(tables(3), no_stage, none)
+      allocate (keys, source=[tables(1)%keys, tables(2)%keys, tables(3)%keys])
+   end function case_keys
+
+   !> A table whose group gives stresses in a unit.
+   pure type(key_table_t) function of_unit(k, unit) result(table)
+      type(key_table_t), intent(in) :: k
+      type(stress_unit_t), intent(in) :: unit
+
+      table = k
+      table%stress = unit%name
+      table%per_kpa = unit%factor
+   end function of_unit
+
+   !> Refuses unknown keys and values outside their range, which for stresses is in the unit of the material. Fault
+   !> EXIT_INPUT, at the first.
+   subroutine check_keys(groups, unit, fault)
+      type(group_t), intent(in) :: groups(:)   !< (groups of the case)
+      type(stress_unit_t), intent(in) :: unit
+      type(fault_t), intent(inout) :: fault
+      type(key_t), allocatable :: keys(:)
+      integer :: i
+
+      allocate (keys, source=case_keys(unit))
+      do i = 1, size(groups)
+         if (any(keys%group == groups(i)%name)) call check_group(keys, groups(i), .false., fault)
+      end do
+   end subroutine check_keys
+
+   subroutine read_settings(k, test)
+      type(key_table_t), intent(inout) :: k
+      type(case_t), intent(inout) :: test
+
+      call k%text('name', test%name, 'name of the case and of its output; default: name of the file')
+      call k%text('title', test%title, 'a line about the case')
+      call k%number('control_tolerance', test%control_tolerance, 1.0e-12_wp, 1.0e-3_wp, &
+                    'error allowed in prescribed stresses over the effective stress; default 1e-10')
+      call k%number('accuracy', test%accuracy, 1.0e-8_wp, 0.5_wp, &
+                    'relative error wanted in the histories; chooses increments and stress tolerance that are not '// &
+                    'given')
+      call k%whole('max_updates', test%max_updates, 1, 1000000000, &
+                   'most updates of the material; then the test stops (for fits); default: no limit')
+   end subroutine read_settings
 
    !> The law of a case, with its retention curve.
    subroutine read_material(group, of_retention, groups, test, fault)
@@ -190,105 +252,121 @@ contains
       place = i
    end subroutine only_once
 
-   subroutine read_initial(group, soil, start, fault)
-      type(group_t), intent(in) :: group
+   !> The sample where a test begins, and its air and water. Fault EXIT_INPUT: keys contradict each other, the air
+   !> pressure is below vacuum, or the law refuses the start.
+   subroutine read_initial(k, soil, start, fault)
+      type(key_table_t), intent(inout) :: k
+      type(soil_t), intent(inout) :: soil
+      type(point_t), intent(inout) :: start
+      type(fault_t), intent(inout) :: fault
+      type(initial_t) :: initial
+      real(wp) :: p_a
+
+      p_a = ZERO
+      call k%number('p_eff', initial%p, LEAST, MOST, 'mean effective stress of an isotropic start', unit=KPA)
+      call k%number('sigma_a', initial%sigma_a, LEAST, MOST, 'axial effective stress, with sigma_r, instead of p_eff', &
+                    unit=KPA)
+      call k%number('sigma_r', initial%sigma_r, LEAST, MOST, 'radial effective stress, with sigma_a', unit=KPA)
+      call k%number('p_net', initial%p, ZERO, MOST, &
+                    'mean net stress of an isotropic start, instead of p_eff: p'' is p_net + S_w suction', unit=KPA)
+      call k%number('sigma_a_net', initial%sigma_a, ZERO, MOST, &
+                    'axial net stress, with sigma_r_net, instead of p_eff', unit=KPA)
+      call k%number('sigma_r_net', initial%sigma_r, ZERO, MOST, 'radial net stress, with sigma_a_net', unit=KPA)
+      call k%numbers('stress', initial%six, -1.0e7_wp, 1.0e7_wp, &
+                     'effective stresses 11, 22, 33, 12, 13, 23, instead of p_eff', unit=KPA, count=6)
+      call k%number('void_ratio', initial%void_ratio, 0.01_wp, 5*ONE, 'void ratio')
+      call k%number('suction', initial%suction, ZERO, 1.0e6_wp, 'p_a - p_w; default 0, saturated', unit=KPA)
+      call k%number('saturation', initial%s_w, 1.0e-6_wp, ONE, 'degree of saturation between the main curves, with '// &
+                    'hysteresis = 1; default: on the main drying curve')
+      call k%number('air_pressure', p_a, -100*ONE, 1.0e5_wp, &
+                    'air pressure above the atmosphere: back pressure; default 0', unit=KPA)
+      call k%number('henry', soil%air%henry, ZERO, 0.5_wp, 'volume of air that a volume of water dissolves, with '// &
+                    'air = ''constant''; 0.02 at 20 C; default 0')
+      call k%number('k_w', soil%air%stiffness, ZERO, 1.0e9_wp, 'bulk modulus of the water, with '// &
+                    'air = ''constant''; 2.2e6 kPa; default 0: incompressible', unit=KPA)
+      call k%numbers('state_variables', initial%state, -UNBOUNDED, UNBOUNDED, &
+                     'all state variables of the law in their order, with stress, instead of void_ratio')
+      if (k%lists) return
+      call check_initial(k, initial%s_w, fault)
+      if (fault%code == 0) call start_sample(k, initial, soil, start, fault)
+      start%p_a = p_a
+      soil%air%atmosphere = ATMOSPHERE*k%per_kpa
+      if (.not. soil%air%atmosphere + p_a > 0.0_wp) call raise(fault, EXIT_INPUT, at_line(k%group%file, &
+         line_of(k%group, 'air_pressure'))//'air_pressure = '//short(p_a)//' is below vacuum: it counts from the '// &
+         'atmosphere, and must exceed '//short(-soil%air%atmosphere)//' '//trim(k%stress)//'.')
+   end subroutine read_initial
+
+   !> Refuses a stress that is missing or given in two ways, and a state that is. Fault EXIT_INPUT.
+   subroutine check_initial(k, s_w, fault)
+      type(key_table_t), intent(in) :: k
+      real(wp), intent(in) :: s_w
+      type(fault_t), intent(inout) :: fault
+      logical :: effective, net, axial, radial, restored
+      character(:), allocatable :: place
+
+      place = at_line(k%group%file, k%group%line)
+      effective = k%given('p_eff') .or. k%given('sigma_a') .or. k%given('sigma_r')
+      net = k%given('p_net') .or. k%given('sigma_a_net') .or. k%given('sigma_r_net')
+      axial = k%given('sigma_a') .or. k%given('sigma_a_net')
+      radial = k%given('sigma_r') .or. k%given('sigma_r_net')
+      restored = k%given('state_variables')
+      if (net .and. effective) then
+         call raise(fault, EXIT_INPUT, place//'&initial takes the effective stress or the net stress, not both.')
+      else if (.not. (k%given('void_ratio') .or. restored)) then
+         call raise(fault, EXIT_INPUT, place//'&initial lacks void_ratio ('//k%about('void_ratio')//').')
+      else if (restored .and. (k%given('void_ratio') .or. s_w > 0.0_wp .or. .not. k%given('stress'))) then
+         call raise(fault, EXIT_INPUT, at_line(k%group%file, line_of(k%group, 'state_variables'))// &
+                    'state_variables needs stress, and takes the place of void_ratio and saturation; give these '// &
+                    'two alone.')
+      else if (count([k%given('p_eff') .or. k%given('p_net'), axial .or. radial, k%given('stress')]) /= 1) then
+         call raise(fault, EXIT_INPUT, place//'&initial needs the stress once: either p_eff, or sigma_a and '// &
+                    'sigma_r, or stress (six values), or p_net, or sigma_a_net and sigma_r_net.')
+      else if (axial .neqv. radial) then
+         call raise(fault, EXIT_INPUT, place//'&initial needs the axial and the radial stress together.')
+      end if
+   end subroutine check_initial
+
+   !> The sample under its stress. Fault EXIT_INPUT: the law refuses the start, or no laboratory can make it.
+   subroutine start_sample(k, initial, soil, start, fault)
+      type(key_table_t), intent(in) :: k
+      type(initial_t), intent(in) :: initial
       type(soil_t), intent(in) :: soil
       type(point_t), intent(out) :: start
       type(fault_t), intent(inout) :: fault
-      real(wp) :: p_eff, sigma_a, sigma_r, ratio, suction, s_w, stress(6)
-      real(wp), allocatable :: state(:)
-      character(:), allocatable :: name
-      logical :: has_p, has_a, has_r, has_net, has_six, has_state, found
+      real(wp) :: stress(6), mean
+      character(:), allocatable :: place, name
+      logical :: isotropic
 
-      p_eff = 0.0_wp
-      sigma_a = 0.0_wp
-      sigma_r = 0.0_wp
-      suction = 0.0_wp
-      s_w = 0.0_wp
-      ratio = 0.0_wp
-      call get_number(group, 'p_eff', p_eff, has_p)
-      call get_number(group, 'sigma_a', sigma_a, has_a)
-      call get_number(group, 'sigma_r', sigma_r, has_r)
-      call get_number(group, 'suction', suction, found)
-      call get_number(group, 'saturation', s_w, found)
-      has_net = given(group, 'p_net') .or. given(group, 'sigma_a_net') .or. given(group, 'sigma_r_net')
-      if (has_net) then
-         if (has_p .or. has_a .or. has_r) then
-            call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial takes the effective stress '// &
-                       'or the net stress, not both.')
-            return
-         end if
-         call get_number(group, 'p_net', p_eff, has_p)
-         call get_number(group, 'sigma_a_net', sigma_a, has_a)
-         call get_number(group, 'sigma_r_net', sigma_r, has_r)
-      end if
-      has_six = given(group, 'stress')
-      has_state = given(group, 'state_variables')
-      call get_number(group, 'void_ratio', ratio, found)
-      if (.not. (found .or. has_state)) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&initial lacks void_ratio ('// &
-                    describe_key(CASE_KEYS, 'initial', 'void_ratio')//').')
-      else if (has_state .and. (found .or. s_w > 0.0_wp .or. .not. has_six)) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'state_variables'))//'state_variables '// &
-                    'needs stress, and takes the place of void_ratio and saturation; give these two alone.')
-      else if (count([has_p, has_a .or. has_r, has_six]) /= 1) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
-                    '&initial needs the stress once: either p_eff, or sigma_a and sigma_r, or stress (six values), '// &
-                    'or p_net, or sigma_a_net and sigma_r_net.')
-      else if (has_a .neqv. has_r) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)// &
-                    '&initial needs the axial and the radial stress together.')
-      end if
-      if (fault%code /= 0) return
-
-      name = ' '//trim(soil%law%unit%name)
+      place = at_line(k%group%file, k%group%line)
+      isotropic = k%given('p_eff') .or. k%given('p_net')
       stress = 0.0_wp
-      stress(AXIAL) = merge(p_eff, sigma_a, has_p)
-      stress(RADIAL) = merge(p_eff, sigma_r, has_p)
-      if (has_six) call get_numbers(group, 'stress', stress)
-      if (has_state) then
-         allocate (state(group%entries(find_entry(group, 'state_variables'))%count))
-         call get_numbers(group, 'state_variables', state)
-         call restore_point(soil, stress, suction, state, start, fault)
-      else
-         if (has_net) then
-            ! S_w knows no stress: a sample at any stress tells it.
-            call start_point(soil, suction_stress(stress, suction), suction, ratio, s_w, start, fault)
-            if (fault%code == 0) stress = suction_stress(stress, saturation(soil, start)*suction)
-         end if
-         if (fault%code == 0) call start_point(soil, stress, suction, ratio, s_w, start, fault)
-      end if
-      if (fault%code /= 0) then
-         fault%text = at_line(group%file, group%line)//fault%text
-      else if (has_state) then
+      stress(AXIAL) = merge(initial%p, initial%sigma_a, isotropic)
+      stress(RADIAL) = merge(initial%p, initial%sigma_r, isotropic)
+      if (k%given('stress')) stress = initial%six
+      if (k%given('state_variables')) then
+         call restore_point(soil, stress, initial%suction, initial%state, start, fault)
+         if (fault%code /= 0) fault%text = place//fault%text
          return   ! what its history left, whatever that is
-      else if (mean_stress(start) > (1.0_wp + LIFTED)*sum(stress(1:3))/3.0_wp) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'the mean effective stress is '// &
-                    short(sum(stress(1:3))/3.0_wp)//name//', below p_min of the material, '// &
-                    short(mean_stress(start))//name//'; raise the one or lower the other.')
-      else if (.not. has_six) then
-         call refuse_tension(group, soil, start, fault)
       end if
-   end subroutine read_initial
-
-   !> Reads the properties of air and water of the sample, and the air pressure of the start. Fault EXIT_INPUT: below
-   !> vacuum.
-   subroutine read_air(group, soil, p_a, fault)
-      type(group_t), intent(in) :: group
-      type(soil_t), intent(inout) :: soil
-      real(wp), intent(inout) :: p_a   !< [unit of stress of the law]
-      type(fault_t), intent(inout) :: fault
-      logical :: found
-
-      soil%air%atmosphere = ATMOSPHERE*soil%law%unit%factor
-      call get_number(group, 'henry', soil%air%henry, found)
-      call get_number(group, 'k_w', soil%air%stiffness, found)
-      call get_number(group, 'air_pressure', p_a, found)
-      if (soil%air%atmosphere + p_a > 0.0_wp) return
-      call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'air_pressure'))//'air_pressure = '// &
-                 short(p_a)//' is below vacuum: it counts from the atmosphere, and must exceed '// &
-                 short(-soil%air%atmosphere)//' '//trim(soil%law%unit%name)//'.')
-   end subroutine read_air
+      if (k%given('p_net') .or. k%given('sigma_a_net')) then
+         ! S_w knows no stress: a sample at any stress tells it.
+         call start_point(soil, suction_stress(stress, initial%suction), initial%suction, initial%void_ratio, &
+                          initial%s_w, start, fault)
+         if (fault%code == 0) stress = suction_stress(stress, saturation(soil, start)*initial%suction)
+      end if
+      if (fault%code == 0) call start_point(soil, stress, initial%suction, initial%void_ratio, initial%s_w, start, &
+                                            fault)
+      mean = sum(stress(1:3))/3.0_wp
+      name = ' '//trim(k%stress)
+      if (fault%code /= 0) then
+         fault%text = place//fault%text
+      else if (mean_stress(start) > (1.0_wp + LIFTED)*mean) then
+         call raise(fault, EXIT_INPUT, place//'the mean effective stress is '//short(mean)//name//', below p_min '// &
+                    'of the material, '//short(mean_stress(start))//name//'; raise the one or lower the other.')
+      else if (.not. k%given('stress')) then
+         call refuse_tension(k%group, soil, start, fault)
+      end if
+   end subroutine start_sample
 
    !> Stress with a pressure added to its normal components. [unit of stress]
    pure function suction_stress(stress, pressure) result(total)

@@ -3,10 +3,14 @@
 module triax_help
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
    use texts, only: short
-   use key_schema, only: key_t
+   use faults, only: fault_t
+   use key_schema, only: key_t, described
+   use key_table, only: key_table_t, listing
    use material_registry, only: law_names, law_keys
-   use retention_groups, only: RETENTION_KEYS
-   use triax_keys, only: CASE_KEYS, print_keys
+   use retention_curves, only: retention_t
+   use retention_groups, only: new_retention
+   use stress_units, only: KILOPASCAL
+   use triax_case, only: case_keys
    use triax_stage, only: CONTROL_NAMES, QUANTITIES, leads_of, LINEAR
    use library_tables, only: property_count, property_name, property_unit, property_origin, property_meaning, &
       property_range
@@ -18,7 +22,9 @@ contains
    !> Prints the usage, every key of a case and every control.
    subroutine print_help()
       character(12), allocatable :: laws(:)
-      type(key_t), allocatable :: keys(:)
+      type(key_table_t) :: table
+      class(retention_t), allocatable :: unused
+      type(fault_t) :: none
       integer :: i
 
       write (output_unit, '(a)') &
@@ -50,20 +56,33 @@ contains
          '      file             path of a material file, relative to the case file', &
          '      name, reference  texts', &
          '      (parameters)     by name, see --template; they replace those of the file'
-      allocate (laws(0), keys(0))   ! or gfortran believes the assignments to read them
-      laws = law_names()
+      allocate (laws, source=law_names())
       do i = 2, size(laws)
-         keys = law_keys(laws(i))
-         keys%group = 'material'
-         call print_keys(output_unit, keys, ' with law = '''//trim(laws(i))//''', besides name and reference')
+         call print_keys(law_keys(laws(i), 'material'), ' with law = '''//trim(laws(i))// &
+                         ''', besides name and reference')
       end do
-      call print_keys(output_unit, RETENTION_KEYS, ' of a law that has none of its own')
-      call print_keys(output_unit, CASE_KEYS, '')
+      table = listing('retention')
+      call new_retention(table, unused, none)
+      call print_keys(table%keys, ' of a law that has none of its own')
+      call print_keys(case_keys(KILOPASCAL), '')
       write (output_unit, '(a)') '   Controls, and the keys of which one ends the stage:'
       do i = 1, size(CONTROL_NAMES)
          write (output_unit, '(4a)') '      ', CONTROL_NAMES(i), ' ', leads_text(i)
       end do
    end subroutine print_help
+
+   !> A list of keys, under the heads of their groups.
+   subroutine print_keys(keys, remark)
+      type(key_t), intent(in) :: keys(:)   !< (keys to print)
+      character(*), intent(in) :: remark   !< Behind the head.
+      integer :: k
+
+      do k = 1, size(keys)
+         if (.not. any(keys(:k - 1)%group == keys(k)%group)) write (output_unit, '(3a)') '   &', &
+            trim(keys(k)%group), remark
+         write (output_unit, '(4a)') '      ', keys(k)%name, ' ', described(keys(k))
+      end do
+   end subroutine print_keys
 
    !> "eps_a_end or q_end"
    pure function leads_text(control) result(text)

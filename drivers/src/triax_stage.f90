@@ -12,7 +12,7 @@ module triax_stage
    public :: test_stage_t, quantity_t, set_constraints, quantity_rows, leads_of, keeps_volume, shear_control, &
              general_control
    public :: CONTROL_NAMES, QUANTITIES, STRAIN_PATH, STRESS_PATH, LINEAR, CONSTANT_NET_STRESS
-   public :: BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
+   public :: BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    public :: PER_STRAIN, PER_PRESSURE, PER_SHARE, ROWS
 
    integer, parameter :: ROWS = 6          !< Constraints of a stage beside the one on suction.

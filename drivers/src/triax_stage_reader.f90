@@ -5,12 +5,13 @@ module triax_stage_reader
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use texts, only: lower_case, short, whole, LENGTH
    use namelists, only: group_t
-   use stress_units, only: stress_unit_t
    use spelling, only: nearest_name
-   use key_schema, only: describe_key, get_text, get_number, get_numbers, line_of, given, word_is
-   use triax_keys, only: CASE_KEYS, keys_in
+   use key_schema, only: get_text, line_of, given
+   use key_table, only: key_table_t
+   use stress_units, only: KILOPASCAL
    use triax_stage, only: test_stage_t, set_constraints, leads_of, keeps_volume, CONTROL_NAMES, QUANTITIES, LINEAR, &
-                          BY_EPS_A, BY_GAMMA, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
+                          BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, &
+                          BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    implicit none (type, external)
    private
    public :: read_stage
@@ -20,50 +21,150 @@ module triax_stage_reader
    real(wp), parameter :: INTERVALS(3) = [1.0e-3_wp, 10.0_wp, 1.0e-2_wp]
    real(wp), parameter :: SUCTION_INCREMENT = 0.1_wp, SUCTION_INTERVAL = 1.0_wp   ! [kPa]
    real(wp), parameter :: MAX_INCREMENTS = 1.0e8_wp
+   real(wp), parameter :: LARGEST = 1.0e7_wp   !< Stress in a stage [kPa].
+   real(wp), parameter :: FACTOR = 1.0e6_wp    !< In a constraint, and for steps.
+   character(*), parameter :: KPA = KILOPASCAL%name
 contains
    !> A stage from its group, whose entries were checked. Fault EXIT_INPUT: a control or word is unknown, or keys are
    !> missing, contradict each other or have no effect.
-   subroutine read_stage(group, unit, stage, fault)
-      type(group_t), intent(in) :: group
-      type(stress_unit_t), intent(in) :: unit   !< Unit of stress of the material.
+   subroutine read_stage(k, stage, fault)
+      type(key_table_t), intent(inout) :: k
       type(test_stage_t), intent(out) :: stage
       type(fault_t), intent(inout) :: fault
-      logical :: found
+      real(wp) :: ends(BY_CHANGES + ROWS - 1)
 
-      stage%line = group%line
-      call read_control(group, stage, fault)
-      if (fault%code == 0) call read_cycles(group, stage, fault)
-      if (fault%code == 0) call read_lead(group, unit, stage, fault)
-      if (fault%code == 0) call read_water(group, stage, fault)
-      if (fault%code /= 0) return
+      ends = 0.0_wp
+      call declare_ends(k, stage, ends)
+      call declare_course(k, stage)
+      if (k%lists) return
+      stage%line = k%group%line
+      call read_word(k%group, 'control', CONTROL_NAMES, stage%control, fault)
+      if (fault%code == 0) call read_cycles(k, stage, fault)
+      if (fault%code == 0) call read_lead(k, ends, stage, fault)
+      if (fault%code == 0) call read_water(k, stage, fault)
+      if (fault%code == 0) call read_steps(k, stage, fault)
+   end subroutine read_stage
 
-      if (stage%lead == BY_SUCTION) then
-         stage%increment = SUCTION_INCREMENT
-         stage%interval = SUCTION_INTERVAL
-      else
-         stage%increment = INCREMENTS(QUANTITIES(stage%lead)%unit)
-         stage%interval = INTERVALS(QUANTITIES(stage%lead)%unit)
+   !> Declares what a stage does, and the values at its end.
+   subroutine declare_ends(k, stage, ends)
+      type(key_table_t), intent(inout) :: k
+      type(test_stage_t), intent(inout) :: stage
+      real(wp), intent(inout) :: ends(:)   !< By BY_*; the change of constraint i at BY_CHANGES + i - 1.
+      real(wp), allocatable :: six(:)
+      character(LENGTH) :: word
+      integer :: i
+
+      word = ''
+      call k%text('control', word, 'see the list of controls')
+      call k%flag('stress', stage%effective, 'net|effective', 'effective', &
+                  'stress that is prescribed, default net (total with air = ''constant''); the same without suction')
+      call k%number('eps_a_end', ends(BY_EPS_A), -1.0_wp, 1.0_wp, 'axial strain at the end, from the start of the test')
+      call k%number('eps_v_end', ends(BY_EPS_V), -1.0_wp, 1.0_wp, &
+                    'volumetric strain at the end, from the start of the test')
+      call k%number('gamma_end', ends(BY_GAMMA), -2.0_wp, 2.0_wp, &
+                    'engineering shear strain 13 at the end, from the start of the test')
+      call k%number('sigma_a_end', ends(BY_SIGMA_A), -LARGEST, LARGEST, 'axial stress at the end', unit=KPA)
+      call k%number('p_end', ends(BY_P), -LARGEST, LARGEST, 'mean stress at the end', unit=KPA)
+      call k%number('q_end', ends(BY_Q), -LARGEST, LARGEST, 'sigma_a - sigma_r at the end', unit=KPA)
+      call k%number('tau_end', ends(BY_TAU), -LARGEST, LARGEST, 'shear stress 13 at the end', unit=KPA)
+      call k%numbers('d_eps', six, -1.0_wp, 1.0_wp, 'change of the strains 11, 22, 33, 12, 13, 23, shear as '// &
+                     'engineering strain (strain_path)', count=ROWS)
+      if (size(six) == ROWS) stage%changes = six
+      call k%numbers('d_sigma', six, -LARGEST, LARGEST, 'change of the stresses 11, 22, 33, 12, 13, 23 (stress_path)', &
+                     unit=KPA, count=ROWS)
+      if (size(six) == ROWS) stage%changes = six
+      do i = 1, ROWS
+         call k%numbers('strain_'//whole(i), six, -FACTOR, FACTOR, &
+                        'factors of the six strains in constraint '//whole(i)//', default 0 (linear)', count=6)
+         if (size(six) == 6) stage%strain_rows(:, i) = six
+      end do
+      do i = 1, ROWS
+         call k%numbers('stress_'//whole(i), six, -FACTOR, FACTOR, &
+                        'factors of the six stresses in constraint '//whole(i)//', default 0 (linear)', count=6)
+         if (size(six) == 6) stage%stress_rows(:, i) = six
+      end do
+      do i = 1, ROWS
+         call k%number('change_'//whole(i), ends(BY_CHANGES + i - 1), -either(k, LARGEST), either(k, LARGEST), &
+                       'change of the sum of constraint '//whole(i)//' over the stage, default 0 (linear)')
+      end do
+      call k%number('suction_end', stage%suction_end, 0.0_wp, 1.0e6_wp, &
+                    'suction at the end, reached in equal parts; default: suction is constant', unit=KPA)
+   end subroutine declare_ends
+
+   !> Declares how a stage goes on: water and air, cycles, and steps.
+   subroutine declare_course(k, stage)
+      type(key_table_t), intent(inout) :: k
+      type(test_stage_t), intent(inout) :: stage
+      character(LENGTH) :: word
+
+      word = ''
+      call k%number('d_suction', stage%suction_change, -1.0e6_wp, 1.0e6_wp, &
+                    'change of the suction over the stage, instead of suction_end', unit=KPA)
+      call k%flag('water', stage%keeps_water, 'free|constant', 'constant', &
+                  'constant: the water content S_w e is constant and suction changes; default free')
+      call k%flag('air', stage%keeps_air, 'free|constant', 'constant', 'constant: the air keeps its mass and its '// &
+                  'pressure changes, with water = ''constant''; default free')
+      call k%text('cycle_by', word, &
+                  'eps_a or gamma (strain is reversed), q or tau (strain is driven until the stress is reached)')
+      call k%number('amplitude', stage%amplitude, -either(k, LARGEST), either(k, LARGEST), &
+                    'amplitude of the cycles, in the unit of cycle_by; negative: the first half cycle is backwards')
+      call k%number('centre', stage%centre, -either(k, LARGEST), either(k, LARGEST), &
+                    'centre of the cycles; default: the value where the stage begins')
+      call k%whole('cycles', stage%cycles, 1, 1000000, 'number of cycles')
+      call k%number('stop_r_u', stage%stop_r_u, 1.0e-3_wp, 1.0_wp, &
+                    'pore pressure ratio that ends the stage (undrained, simple_shear_constant_volume; saturated)')
+      call k%number('stop_double_amplitude', stage%stop_double_amplitude, 1.0e-6_wp, 1.0_wp, &
+                    'strain eps_a or gamma between two reversals that ends the stage (cycles)')
+      call k%number('increment', stage%increment, 1.0e-12_wp*min(1.0_wp, k%per_kpa), either(k, FACTOR), 'largest '// &
+                    'step of the key that ends the stage: strain, default 1e-4; stress, 1 kPa; suction, 0.1 kPa; '// &
+                    'linear, 1e-3 of 1')
+      call k%number('output_interval', stage%interval, 1.0e-12_wp*min(1.0_wp, k%per_kpa), either(k, FACTOR), &
+                    'a row at each multiple of it: strain, default 1e-3; stress [kPa], 10; suction [kPa], 1; '// &
+                    'linear: 1e-2')
+   end subroutine declare_course
+
+   !> Limit of a value that is a stress [kPa] or a strain, as what it is comes from another key.
+   pure real(wp) function either(k, limit)
+      type(key_table_t), intent(in) :: k
+      real(wp), intent(in) :: limit
+
+      either = limit*max(1.0_wp, k%per_kpa)
+   end function either
+
+   !> Increments, rows of the output, and what ends the stage before its time.
+   subroutine read_steps(k, stage, fault)
+      type(key_table_t), intent(in) :: k
+      type(test_stage_t), intent(inout) :: stage
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: increment, interval
+      logical :: is_stress
+
+      increment = SUCTION_INCREMENT
+      interval = SUCTION_INTERVAL
+      if (stage%lead /= BY_SUCTION) then
+         increment = INCREMENTS(QUANTITIES(stage%lead)%unit)
+         interval = INTERVALS(QUANTITIES(stage%lead)%unit)
       end if
-      if (QUANTITIES(stage%lead)%unit == PER_PRESSURE) then
-         stage%increment = stage%increment*unit%factor
-         stage%interval = stage%interval*unit%factor
+      is_stress = QUANTITIES(stage%lead)%unit == PER_PRESSURE
+      if (is_stress) then
+         increment = increment*k%per_kpa
+         interval = interval*k%per_kpa
       end if
-      stage%suction_increment = SUCTION_INCREMENT*unit%factor
-      stage%suction_interval = SUCTION_INTERVAL*unit%factor
-      call get_number(group, 'increment', stage%increment, stage%given_increment)
-      if (stage%given_increment .and. QUANTITIES(stage%lead)%unit == PER_PRESSURE) &
-         stage%suction_increment = stage%increment
-      call get_number(group, 'output_interval', stage%interval, found)
-      if (found .and. QUANTITIES(stage%lead)%unit == PER_PRESSURE) stage%suction_interval = stage%interval
-      call get_number(group, 'stop_r_u', stage%stop_r_u, found)
-      if (found .and. .not. (keeps_volume(stage%control) .or. stage%keeps_air)) then
-         call refuse(group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &
+      stage%suction_increment = SUCTION_INCREMENT*k%per_kpa
+      stage%suction_interval = SUCTION_INTERVAL*k%per_kpa
+      stage%given_increment = k%given('increment')
+      if (.not. stage%given_increment) stage%increment = increment
+      if (.not. k%given('output_interval')) stage%interval = interval
+      if (is_stress .and. stage%given_increment) stage%suction_increment = stage%increment
+      if (is_stress .and. k%given('output_interval')) stage%suction_interval = stage%interval
+      if (k%given('stop_r_u') .and. .not. (keeps_volume(stage%control) .or. stage%keeps_air)) then
+         call refuse(k%group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &
                      ', in which no pore pressure builds up; remove it.', fault)
-      else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. QUANTITIES(stage%lead)%unit /= PER_PRESSURE) then
-         call refuse(group, 'increment', '= '//short(stage%increment)//' could make more than '// &
+      else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. .not. is_stress) then
+         call refuse(k%group, 'increment', '= '//short(stage%increment)//' could make more than '// &
                      short(MAX_INCREMENTS)//' increments; use '//short(2.0_wp/MAX_INCREMENTS)//' or more.', fault)
       end if
-   end subroutine read_stage
+   end subroutine read_steps
 
    !> "file:line: key sentence", where the key is given or its group begins.
    subroutine refuse(group, key, sentence, fault)
@@ -111,72 +212,53 @@ contains
                   trim(words(nearest_name(word, words)))//' (one of '//list//').', fault)
    end subroutine read_word
 
-   subroutine read_control(group, stage, fault)
-      type(group_t), intent(in) :: group
-      type(test_stage_t), intent(inout) :: stage
-      type(fault_t), intent(inout) :: fault
-
-      call read_word(group, 'control', CONTROL_NAMES, stage%control, fault)
-      stage%effective = word_is(CASE_KEYS, group, 'stress', 'effective')
-   end subroutine read_control
-
    !> Cycles: by what, how many, how far. The stage is then led by the strain that is driven.
-   subroutine read_cycles(group, stage, fault)
-      type(group_t), intent(in) :: group
+   subroutine read_cycles(k, stage, fault)
+      type(key_table_t), intent(in) :: k
       type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: OF_CYCLES(4) = [character(21) :: 'cycles', 'amplitude', 'centre', &
                                                  'stop_double_amplitude']
       integer, allocatable :: leads(:)
-      real(wp) :: cycles
       integer :: kind, i
-      logical :: has_cycles, has_amplitude, found
 
-      if (.not. given(group, 'cycle_by')) then
+      if (.not. k%given('cycle_by')) then
          do i = 1, size(OF_CYCLES)
-            if (given(group, trim(OF_CYCLES(i)))) then
-               call refuse(group, OF_CYCLES(i), 'needs cycle_by: '// &
-                           describe_key(CASE_KEYS, 'stage', 'cycle_by')//'.', fault)
-            end if
+            if (k%given(trim(OF_CYCLES(i)))) &
+               call refuse(k%group, OF_CYCLES(i), 'needs cycle_by: '//k%about('cycle_by')//'.', fault)
          end do
          return
       end if
       allocate (leads(0))   ! or gfortran believes the assignment to read it
       leads = leads_of(stage%control)
       if (.not. any(leads == BY_EPS_A .or. leads == BY_GAMMA)) then
-         call refuse(group, 'cycle_by', 'has no effect with control '//name_of(stage%control)// &
+         call refuse(k%group, 'cycle_by', 'has no effect with control '//name_of(stage%control)// &
                      '; cycles run in drained, undrained, constant_p and in simple shear.', fault)
          return
       end if
-      call read_word(group, 'cycle_by', QUANTITIES(leads)%name, kind, fault)
+      call read_word(k%group, 'cycle_by', QUANTITIES(leads)%name, kind, fault)
       if (fault%code /= 0) return
       stage%cycle_by = leads(kind)
       stage%lead = leads(1)
-      cycles = 0.0_wp
-      call get_number(group, 'cycles', cycles, has_cycles)
-      call get_number(group, 'amplitude', stage%amplitude, has_amplitude)
-      call get_number(group, 'centre', stage%centre, stage%has_centre)
-      call get_number(group, 'stop_double_amplitude', stage%stop_double_amplitude, found)
-      stage%cycles = nint(cycles)
-      if (.not. has_cycles) then
-         call refuse(group, 'cycle_by', 'needs cycles: '//describe_key(CASE_KEYS, 'stage', 'cycles')//'.', fault)
-      else if (.not. has_amplitude) then
-         call refuse(group, 'cycle_by', 'needs amplitude: '//describe_key(CASE_KEYS, 'stage', 'amplitude')//'.', fault)
+      stage%has_centre = k%given('centre')
+      if (.not. k%given('cycles')) then
+         call refuse(k%group, 'cycle_by', 'needs cycles: '//k%about('cycles')//'.', fault)
+      else if (.not. k%given('amplitude')) then
+         call refuse(k%group, 'cycle_by', 'needs amplitude: '//k%about('amplitude')//'.', fault)
       else if (abs(stage%amplitude) <= 0.0_wp) then
-         call refuse(group, 'amplitude', '= 0: there is nothing to do.', fault)
+         call refuse(k%group, 'amplitude', '= 0: there is nothing to do.', fault)
       end if
    end subroutine read_cycles
 
    !> Reads the quantity that leads a stage of one way, and its value at the end.
-   subroutine read_lead(group, unit, stage, fault)
-      type(group_t), intent(in) :: group
-      type(stress_unit_t), intent(in) :: unit
+   subroutine read_lead(k, ends, stage, fault)
+      type(key_table_t), intent(in) :: k
+      real(wp), intent(in) :: ends(:)
       type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
       integer, allocatable :: leads(:)
       character(:), allocatable :: choice
       integer :: i
-      logical :: found
 
       allocate (leads(0))   ! or gfortran believes the assignment to read it
       leads = leads_of(stage%control)
@@ -186,15 +268,15 @@ contains
       end do
       do i = 1, size(QUANTITIES)
          associate (key => QUANTITIES(i)%key)
-            if (.not. given(group, key) .or. (i == BY_SUCTION .and. .not. any(leads == i))) cycle
+            if (.not. k%given(trim(key)) .or. (i == BY_SUCTION .and. .not. any(leads == i))) cycle
             if (stage%cycles > 0) then
-               call refuse(group, key, 'cannot be combined with cycles, which begin at the present state; remove it.', &
-                           fault)
+               call refuse(k%group, key, 'cannot be combined with cycles, which begin at the present state; remove '// &
+                           'it.', fault)
             else if (.not. any(leads == i)) then
-               call refuse(group, key, 'has no effect with control '//name_of(stage%control)// &
+               call refuse(k%group, key, 'has no effect with control '//name_of(stage%control)// &
                            ', which takes '//choice//'; remove it.', fault)
             else if (stage%lead > 0) then
-               call refuse(group, key, 'cannot be combined with '//trim(QUANTITIES(stage%lead)%key)// &
+               call refuse(k%group, key, 'cannot be combined with '//trim(QUANTITIES(stage%lead)%key)// &
                            ': one of them ends the stage; remove the other.', fault)
             end if
             if (fault%code /= 0) return
@@ -203,70 +285,59 @@ contains
       end do
       if (stage%control == LINEAR) stage%lead = BY_CHANGES
       if (stage%lead == 0) then
-         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'a stage of control '// &
+         call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)//'a stage of control '// &
                     name_of(stage%control)//' needs '//choice//': '// &
-                    describe_key(keys_in(unit), 'stage', QUANTITIES(leads(1))%key)//'.')
+                    k%about(QUANTITIES(leads(1))%key)//'.')
          return
       end if
 
       call set_constraints(stage, stage%lead)
       stage%target = 1.0_wp
-      select case (stage%lead)
-      case (BY_D_EPS)
-         call get_numbers(group, 'd_eps', stage%changes)
-      case (BY_D_SIGMA)
-         call get_numbers(group, 'd_sigma', stage%changes)
-      case (BY_CHANGES)
+      if (stage%lead == BY_SUCTION) stage%target = stage%suction_end
+      if (stage%lead < BY_SUCTION) stage%target = ends(stage%lead)
+      if (stage%lead == BY_CHANGES) then
+         stage%changes = ends(BY_CHANGES:)
          do i = 1, ROWS
-            call get_numbers(group, 'strain_'//whole(i), stage%strain_rows(:, i))
-            call get_numbers(group, 'stress_'//whole(i), stage%stress_rows(:, i))
-            call get_number(group, 'change_'//whole(i), stage%changes(i), found)
-            if (all(abs([stage%strain_rows(:, i), stage%stress_rows(:, i)]) <= 0.0_wp)) then
-               call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'constraint '//whole(i)// &
-                          ' of a linear stage is empty; give strain_'//whole(i)//' or stress_'//whole(i)// &
-                          ', six factors.')
-               return
-            end if
+            if (any(abs([stage%strain_rows(:, i), stage%stress_rows(:, i)]) > 0.0_wp)) cycle
+            call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)//'constraint '//whole(i)// &
+                       ' of a linear stage is empty; give strain_'//whole(i)//' or stress_'//whole(i)//', six factors.')
+            return
          end do
-      case default
-         call get_number(group, QUANTITIES(stage%lead)%key, stage%target, found)
-      end select
+      end if
       if (any(stage%lead == [BY_D_EPS, BY_D_SIGMA]) .and. all(abs(stage%changes) <= 0.0_wp)) then
-         call refuse(group, QUANTITIES(stage%lead)%key, 'has six zeros; give what changes.', fault)
+         call refuse(k%group, QUANTITIES(stage%lead)%key, 'has six zeros; give what changes.', fault)
       end if
    end subroutine read_lead
 
    !> The path of suction.
-   subroutine read_water(group, stage, fault)
-      type(group_t), intent(in) :: group
+   subroutine read_water(k, stage, fault)
+      type(key_table_t), intent(in) :: k
       type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: key
 
-      stage%keeps_water = word_is(CASE_KEYS, group, 'water', 'constant')
-      stage%keeps_air = word_is(CASE_KEYS, group, 'air', 'constant')
       if (stage%keeps_air .and. .not. stage%keeps_water) then
-         call refuse(group, 'air', '= constant needs water = ''constant'': water that leaves would take dissolved '// &
-                     'air with it, and what closes the sample to air closes it to water.', fault)
+         call refuse(k%group, 'air', '= constant needs water = ''constant'': water that leaves would take '// &
+                     'dissolved air with it, and what closes the sample to air closes it to water.', fault)
          return
       end if
-      call get_number(group, 'suction_end', stage%suction_end, stage%moves_suction)
-      call get_number(group, 'd_suction', stage%suction_change, stage%by_change)
+      stage%moves_suction = k%given('suction_end')
+      stage%by_change = k%given('d_suction')
       if (stage%moves_suction .and. stage%by_change) then
-         call refuse(group, 'd_suction', 'cannot be combined with suction_end; remove one of them.', fault)
+         call refuse(k%group, 'd_suction', 'cannot be combined with suction_end; remove one of them.', fault)
          return
       else if (stage%by_change .and. stage%lead == BY_SUCTION) then
-         call refuse(group, 'd_suction', 'has no effect with control '//name_of(stage%control)// &
+         call refuse(k%group, 'd_suction', 'has no effect with control '//name_of(stage%control)// &
                      ', which takes suction_end; remove it.', fault)
          return
       end if
       stage%moves_suction = stage%moves_suction .or. stage%by_change
       key = trim(merge('d_suction  ', 'suction_end', stage%by_change))
       if (stage%moves_suction .and. stage%keeps_water) then
-         call refuse(group, key, 'cannot be combined with a constant water content; remove one of them.', &
+         call refuse(k%group, key, 'cannot be combined with a constant water content; remove one of them.', &
                      fault)
       else if (stage%moves_suction .and. stage%cycles > 0) then
-         call refuse(group, key, 'cannot be combined with cycles; change the suction in a separate stage.', &
+         call refuse(k%group, key, 'cannot be combined with cycles; change the suction in a separate stage.', &
                      fault)
       end if
    end subroutine read_water

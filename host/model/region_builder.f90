@@ -5,6 +5,7 @@ module region_builder
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
    use key_schema, only: line_of
+   use key_table, only: key_table_t, reading
    use material_mud, only: mud_t
    use material_point, only: material_t, material_slot_t
    use material_registry, only: new_material
@@ -140,6 +141,7 @@ contains
       type(scene_region_t), intent(in) :: given
       class(material_t), intent(inout) :: law
       type(fault_t), intent(inout) :: fault
+      type(key_table_t) :: table
       logical :: asked
       integer :: k
 
@@ -158,7 +160,9 @@ contains
                     'retention of its own; name a &retention.')
       else if (.not. law%has_retention) then
          k = defined_name('retention', given%retention_name, scene%retentions%name, place_of(given), fault)
-         if (fault%code == 0) call new_retention(scene%retentions(k)%group, law%curve, fault)
+         if (fault%code /= 0) return
+         table = reading(scene%retentions(k)%group)
+         call new_retention(table, law%curve, fault)
       end if
    end subroutine give_retention
 end module region_builder

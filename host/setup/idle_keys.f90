@@ -3,12 +3,12 @@
 module idle_keys
    use faults, only: at_line
    use generalised_alpha, only: has_rates
-   use key_schema, only: key_t, given, line_of, place_of, text_of
+   use key_schema, only: key_t, get_text, given, line_of, place_of
    use material_registry, only: is_law
    use namelists, only: group_t
    use scene_keys, only: keys_of_scenes
    use scene_types, only: scene_t, WITH_P_W, WITH_P_C
-   use texts, only: lower_case
+   use texts, only: lower_case, LENGTH
    use warnings, only: add_warning, WARNING_LENGTH
    implicit none (type, external)
    private
@@ -45,6 +45,7 @@ contains
       type(group_t), intent(in) :: group
       character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(:), allocatable :: rest, condition, other, word
+      character(LENGTH) :: text
       integer :: at
 
       rest = trim(key%acts)
@@ -68,7 +69,9 @@ contains
          case default
             at = index(condition, '=')
             other = condition(:at - 1)
-            word = lower_case(text_of(keys, group, other))
+            text = keys(place_of(keys, group%name, other))%preset   ! unless the group gives it
+            call get_text(group, other, text)
+            word = lower_case(trim(text))
             if (word == '' .or. index('|'//condition(at + 1:)//'|', '|'//word//'|') > 0) cycle
             call idle(' with '//other//' = '''//word//'''')
          end select
@@ -107,14 +110,16 @@ contains
       type(key_t), intent(in) :: keys(:)
       type(group_t), intent(in) :: groups(:)
       character(*), intent(in) :: kind, name
+      character(LENGTH) :: text
       integer :: g, k
 
       is_referred_to = .false.
       do g = 1, size(groups)
          do k = 1, size(keys)
             if (keys(k)%group /= groups(g)%name .or. keys(k)%refers /= kind) cycle
-            if (given(groups(g), keys(k)%name)) is_referred_to = is_referred_to .or. &
-               text_of(keys, groups(g), keys(k)%name) == name
+            text = ''
+            call get_text(groups(g), keys(k)%name, text)
+            is_referred_to = is_referred_to .or. (given(groups(g), keys(k)%name) .and. text == name)
          end do
       end do
    end function is_referred_to

@@ -8,13 +8,14 @@ module scene_keys
    use history_shapes, only: pairs_of_shape, SHAPE_WORDS, TABLE
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, REQUIRED, UNBOUNDED, check_group, given, line_of
-   use key_table, only: key_table_t
+   use key_table, only: key_table_t, listing
    use material_registry, only: is_law, law_names, law_keys
    use namelists, only: group_t, MAX_VALUES
    use texts, only: LENGTH
    use number_pairs, only: read_pairs
    use permeability_laws, only: permeability_t
-   use retention_groups, only: RETENTION_KEYS
+   use retention_curves, only: retention_t
+   use retention_groups, only: new_retention
    use scene_tolerances, only: ask_steps, ask_stress
    use scene_parts, only: scene_item_t, amplitude_t, stage_t, place_of, LOAD_FORCE_Z, LOAD_OF_BODY, &
                           PRESCRIBED_OF_BODY, initial_values_t, named_point_t
@@ -45,7 +46,7 @@ contains
       integer :: g
 
       allocate (groups_of_terms, source=own_groups())
-      allocate (table%keys(0), table%group%entries(0))
+      table = listing('')
       call make_lists(nothing)
       do g = 1, size(GROUPS)
          table%group%name = GROUPS(g)
@@ -197,9 +198,12 @@ contains
       type(key_table_t), intent(inout) :: k
       type(scene_t), intent(inout) :: scene
       type(scene_law_t) :: law
+      class(retention_t), allocatable :: unused
+      type(fault_t) :: none
 
       call k%text('name', law%name, 'name, for the key of &region', REQUIRED)
-      if (allocated(k%keys)) k%keys = [k%keys, RETENTION_KEYS]
+      ! The curve is made where a region asks for it.
+      if (k%lists) call new_retention(k, unused, none)
       law%group = k%group
       scene%retentions = [scene%retentions, law]
    end subroutine take_retention
@@ -626,7 +630,8 @@ contains
       allocate (all_keys, source=keys_of_scenes())
       allocate (laws, source=law_names())
       do g = 1, size(laws)
-         all_keys = [all_keys, key_t(laws(g), 'name', 't', REQUIRED, 0, 0, LAW_NAME), law_keys(laws(g))]
+         all_keys = [all_keys, key_t(laws(g), 'name', 't', REQUIRED, 0, 0, LAW_NAME), &
+                     law_keys(laws(g), laws(g))]
       end do
       write (unit, '(a)') '! Every group and key of a scene. Lines that begin with "!" may be left out.'
       write (unit, '(a,i0,a)') '! Groups but &scene, &mesh and &fluids may occur several times; lists hold up to ', &

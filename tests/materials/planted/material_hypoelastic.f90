@@ -3,25 +3,21 @@
 !> proportional to the mean stress where the increment begins, saturated unless there is a retention curve.
 module material_hypoelastic
    use faults, only: fault_t
-   use key_schema, only: key_t, number_of, REQUIRED, UNBOUNDED
+   use key_schema, only: REQUIRED, UNBOUNDED
+   use key_table, only: key_table_t
    use kinds, only: wp
    use material_point, only: material_t, response_t, batch_report_t, swollen, NAME_LENGTH
    use retention_curves, only: saturation_t
-   use namelists, only: group_t
    implicit none (type, external)
    private
-   public :: hypoelastic_t, new_hypoelastic, HYPOELASTIC_KEYS
+   public :: hypoelastic_t, new_hypoelastic
 
    integer, parameter :: PLACE_E = 1, PLACE_S_W = 2   !< Places in the state.
    integer, parameter :: NO_PRESSURE = 1              !< Code: the mean stress is tension.
 
-   type(key_t), parameter :: HYPOELASTIC_KEYS(*) = [ &
-      key_t('hypoelastic', 'stiffness', 'n', REQUIRED, 1.0e-3_wp, UNBOUNDED, 'bulk modulus over mean stress [-]'), &
-      key_t('hypoelastic', 'poisson', 'n', '0.25', -0.99_wp, 0.49_wp, 'Poisson''s ratio [-]')]
-
    type, extends(material_t) :: hypoelastic_t
       real(wp) :: stiffness = 0.0_wp   !< K/p' [-]
-      real(wp) :: poisson = 0.0_wp     !< [-]
+      real(wp) :: poisson = 0.25_wp    !< [-]
    contains
       procedure :: initial_state
       procedure :: update
@@ -31,9 +27,9 @@ module material_hypoelastic
       procedure :: saturation
    end type hypoelastic_t
 contains
-   !> The law of a group that was checked against HYPOELASTIC_KEYS.
-   subroutine new_hypoelastic(group, law, title, fault)
-      type(group_t), intent(in) :: group
+   !> The law of a group.
+   subroutine new_hypoelastic(k, law, title, fault)
+      type(key_table_t), intent(inout) :: k
       class(material_t), allocatable, intent(out) :: law
       character(*), intent(inout) :: title
       type(fault_t), intent(inout) :: fault
@@ -41,8 +37,8 @@ contains
 
       associate (unused => title, never => fault)
       end associate
-      made%stiffness = number_of(HYPOELASTIC_KEYS, group, 'stiffness')
-      made%poisson = number_of(HYPOELASTIC_KEYS, group, 'poisson')
+      call k%number('stiffness', made%stiffness, 1.0e-3_wp, UNBOUNDED, 'bulk modulus over mean stress [-]', REQUIRED)
+      call k%number('poisson', made%poisson, -0.99_wp, 0.49_wp, 'Poisson''s ratio [-]')
       made%exact_tangent = .true.
       made%state_names = [character(NAME_LENGTH) :: 'void_ratio', 'saturation']
       made%n_state = size(made%state_names)
