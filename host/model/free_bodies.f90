@@ -7,245 +7,150 @@ module free_bodies
    use exit_codes, only: EXIT_FREE_BODY
    use faults, only: fault_t, raise
    use generalised_alpha, only: has_inertia
+   use load_shapes, only: ties_of
    use model_types, only: model_t
-   use scene_parts, only: acts_in, stage_t
+   use scene_parts, only: acts_in
    use texts, only: short, whole
-   use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z
    implicit none (type, external)
    private
    public :: check_bodies
 
    integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
-   character(*), parameter :: MOTIONS(TURN) = [character(18) :: 'moving along r (x)', 'moving along z (y)', 'turning']
-   character(*), parameter :: REMEDIES(TURN) = [character(10) :: 'u_r', 'u_z', 'u_z or u_r']
-   !> Nodes nearer than this share of the size of a body are at one place, as far as its rotation is concerned.
-   real(wp), parameter :: NEAR_SHARE = 1.0e-5_wp
-   integer, parameter :: MOST_NAMES = 3   !< Number of groups by which a body is named.
+   character(*), parameter :: MOTIONS(TURN) = [character(48) :: 'moving along r (x); add a &fix of u_r', &
+      'moving along z (y); add a &fix of u_z', 'turning; add a &fix of u_z or u_r']
+   character(*), parameter :: ALONG_PLATE = '; along a plate give one friction'
+   real(wp), parameter :: NEAR_SHARE = 1.0e-5_wp   !< Nodes nearer than this share of the mesh are at one place.
+   integer, parameter :: MOST_NAMES = 3            !< Number of groups by which a body is named.
 contains
    !> Refuses a static or quasi-static stage in which neither a support nor a contact holds a body, and notes which
    !> bodies contacts alone hold. Fault EXIT_FREE_BODY: it names a group of the body and the motion.
    subroutine check_bodies(model, fault)
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: free
-      integer :: s
+      integer :: body(size(model%domain%mesh%x, 2)), s, b, f
+      ! Motions that nodes take from their bodies: in every stage, in one, and those that a contact may take.
+      logical, dimension(TURN, size(body)) :: always, held, touched
+      logical :: is_held(TURN)
+      real(wp) :: near
 
-      allocate (model%on_contact(size(model%stages)))
-      do s = 1, size(model%stages)
-         call look_for_bodies(model, model%stages(s), free, model%on_contact(s)%words)
-         if (free /= '' .and. fault%code == 0) call raise(fault, EXIT_FREE_BODY, 'Stage '// &
-            trim(model%stages(s)%name)//': nothing holds '//free)
-      end do
-   end subroutine check_bodies
-
-   !> Ends of sentences about bodies that no support of a stage holds: the first of those that no contact holds either,
-   !> with the remedy, and all that a contact may hold. Empty if there are none, as in a stage with inertia.
-   subroutine look_for_bodies(model, stage, free, on_contact)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      character(:), allocatable, intent(out) :: free, on_contact
-      integer :: body_of(size(model%domain%mesh%x, 2)), b, i, motion
-      logical :: touched(size(model%domain%mesh%x, 2)), fixed
-
-      free = ''
-      on_contact = ''
-      if (has_inertia(stage%kind)) return
-      body_of = bodies_of(model)
-      touched = in_contact(model, stage)
-      do b = 1, size(body_of)
-         ! The first node of a body stands for it; one without an element has no stiffness, and no equation.
-         if (body_of(b) /= b) cycle
-         motion = free_motion(model, stage, body_of == b)
-         if (motion == 0) cycle
-         if (any(touched .and. body_of == b)) then
-            on_contact = on_contact//'; contact alone holds '//described(model, body_of == b)
-         else if (free == '') then
-            free = described(model, body_of == b)//' against '//trim(MOTIONS(motion))//'; add a &fix of '// &
-                   trim(REMEDIES(motion))//' on a group of it, or a contact.'
-         end if
-      end do
-      do i = 1, size(model%plates)
-         associate (plate => model%plates(i))
-            if (plate%group > 0) cycle
-            fixed = is_fixed(model, stage, AT_U_Z, plate%node)
-            if (size(plate%coordinates) > 1 .or. .not. fixed) on_contact = on_contact//'; contact alone holds the '// &
-                                                                           'plate '''//trim(plate%name)//''''
-            if (free /= '') cycle
-            if (any(plate%coordinates%field == AT_U_R) .and. .not. holds_along_r(model, stage, i)) then
-               free = 'the plate '''//trim(plate%name)//''' against moving along r (x): no &contact of it that '// &
-                      'acts has friction; give one friction, or a &fix of u_r with the plate as its group.'
-            else if (.not. (touched(plate%node) .or. fixed)) then
-               free = 'the plate '''//trim(plate%name)//''': no &contact of it acts; add one, or a &fix of u_z '// &
-                      'with the plate as its group.'
-            end if
-         end associate
-      end do
-   end subroutine look_for_bodies
-
-   !> Whether a &fix or the friction of a contact may hold a plate in its plane along r.
-   pure logical function holds_along_r(model, stage, plate) result(holds)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      integer, intent(in) :: plate   !< Its number.
-      integer :: i
-
-      holds = is_fixed(model, stage, AT_U_R, model%plates(plate)%node)
-      do i = 1, size(model%contacts)
-         associate (one => model%contacts(i))
-            holds = holds .or. one%plate == plate .and. has_friction(one%options) .and. acts_in(one%stages, stage%name)
-         end associate
-      end do
-   end function holds_along_r
-
-   !> For every node the first node of its body, 0 for nodes without an element. (nodes)
-   function bodies_of(model) result(body)
-      type(model_t), intent(in) :: model
-      integer :: body(size(model%domain%mesh%x, 2))
-      integer :: e, i, k, n
-
-      body = 0
-      associate (mesh => model%domain%mesh)
-         do e = 1, size(mesh%t6, 2)
-            body(mesh%t6(:, e)) = mesh%t6(:, e)
-         end do
-         do e = 1, size(mesh%t6, 2)
-            call join(mesh%t6(:, e))
-         end do
-         do i = 1, size(model%ties)
-            do k = 1, size(model%ties(i)%pairs, 2)
-               call join(model%ties(i)%pairs(:, k))
+      associate (x => model%domain%mesh%x)
+         near = NEAR_SHARE*maxval(maxval(x, dim=2) - minval(x, dim=2))
+         call find_bodies(model, near, body, always)
+         allocate (model%on_contact(size(model%stages)))
+         do s = 1, size(model%stages)
+            model%on_contact(s)%words = ''
+            if (has_inertia(model%stages(s)%kind)) cycle
+            held = always
+            call add_supports(model, model%stages(s)%name, held, touched)
+            do b = 1, size(body)
+               if (body(b) /= b) cycle
+               is_held = [(any(held(f, :) .and. body == b), f=1, TURN)]
+               do f = 1, DISPLACEMENTS
+                  ! It does not turn where nodes that are held along r differ in z, or those held along z in r.
+                  if (is_held(f)) is_held(TURN) = is_held(TURN) .or. near < &
+                     maxval(x(3 - f, :), mask=held(f, :) .and. body == b) - &
+                     minval(x(3 - f, :), mask=held(f, :) .and. body == b)
+               end do
+               if (all(is_held)) cycle
+               model%on_contact(s)%words = model%on_contact(s)%words//'; contact alone holds '// &
+                                           described(model, body == b)
+               f = findloc(is_held .or. [(any(touched(f, :) .and. body == b), f=1, TURN)], .false., dim=1)
+               if (f > 0 .and. fault%code == 0) call raise(fault, EXIT_FREE_BODY, 'Stage '// &
+                  trim(model%stages(s)%name)//': nothing holds '//described(model, body == b)//' against '// &
+                  trim(MOTIONS(f))//' on a group of it, or a contact'//ALONG_PLATE(:merge(len(ALONG_PLATE), 0, &
+                                                                                         f == AT_U_R))//'.')
             end do
          end do
-         do i = 1, size(model%plates)
-            associate (plate => model%plates(i))
-               if (plate%group == 0) cycle
-               call join(mesh%groups(plate%group)%nodes)
-               if (.not. plate%penalty > 0.0_wp) cycle
-               body(plate%coordinates%node) = plate%coordinates%node
-               call join([mesh%groups(plate%group)%nodes(1), plate%coordinates%node])
-            end associate
-         end do
       end associate
-      do n = 1, size(body)
-         if (body(n) > 0) body(n) = root(n)
-      end do
-   contains
-      subroutine join(nodes)
-         integer, intent(in) :: nodes(:)
-         integer :: j, first, second
+   end subroutine check_bodies
 
-         do j = 2, size(nodes)
-            if (body(nodes(1)) == 0 .or. body(nodes(j)) == 0) cycle
-            first = root(nodes(1))
-            second = root(nodes(j))
-            body(max(first, second)) = min(first, second)
+   !> For every node the first node of its body, which stands for it; huge where there is none. Two nodes at different
+   !> places with one displacement do not turn; nor does a plate with a face of its own, which moves along z alone,
+   !> unless it has more coordinates.
+   subroutine find_bodies(model, near, body, always)
+      type(model_t), intent(in) :: model
+      real(wp), intent(in) :: near             !< [m]
+      integer, intent(out) :: body(:)          !< (nodes)
+      logical, intent(out) :: always(:, :)     !< (TURN, nodes)
+      integer :: before(size(body)), leader(FIELDS, size(body)), e, f, i
+
+      leader = ties_of(model)
+      always = model%domain%axisymmetric
+      always(AT_U_Z, :) = .false.
+      body = huge(body)
+      associate (mesh => model%domain%mesh, plates => model%plates)
+         body(reshape(mesh%t6, [size(mesh%t6)])) = reshape(mesh%t6, [size(mesh%t6)])
+         do i = 1, size(plates)
+            body(plates(i)%coordinates%node) = plates(i)%node
+            if (plates(i)%group == 0) always([AT_U_R, TURN], plates(i)%node) = size(plates(i)%coordinates) == 1
          end do
-      end subroutine join
-
-      !> The way is shortened for those who come after.
-      integer function root(node)
-         integer, intent(in) :: node
-
-         root = node
-         do while (body(root) /= root)
-            body(root) = body(body(root))
-            root = body(root)
-         end do
-      end function root
-   end function bodies_of
-
-   !> Nodes that a contact of a stage may hold. (nodes)
-   function in_contact(model, stage) result(touched)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      logical :: touched(size(model%domain%mesh%x, 2))
-      integer :: i
-
-      touched = .false.
-      do i = 1, size(model%contacts)
-         associate (one => model%contacts(i))
-            if (.not. acts_in(one%stages, stage%name)) cycle
-            touched(model%domain%mesh%groups(one%slave)%nodes) = .true.
-            if (one%plate == 0) touched(model%domain%mesh%groups(one%master)%nodes) = .true.
-            if (one%plate > 0) touched(model%plates(one%plate)%node) = .true.
-         end associate
-      end do
-   end function in_contact
-
-   !> Whether a stage prescribes a displacement of a node.
-   pure logical function is_fixed(model, stage, field, node)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      integer, intent(in) :: field, node
-      integer :: i
-
-      is_fixed = .false.
-      do i = 1, size(model%fixes)
-         if (model%fixes(i)%field /= field .or. .not. acts_in(model%fixes(i)%stages, stage%name)) cycle
-         is_fixed = is_fixed .or. any(model%domain%mesh%groups(model%fixes(i)%group)%nodes == node)
-      end do
-   end function is_fixed
-
-   !> A rigid motion that the supports of a stage leave to a body, 0 if there is none. Supports hold along r or along z:
-   !> a body that both hold can but turn, unless nodes that are held along r differ in z, or those held along z in r.
-   !> In axial symmetry the motion along z alone strains nothing.
-   function free_motion(model, stage, mine) result(motion)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      logical, intent(in) :: mine(:)   !< Nodes of the body.
-      integer :: motion
-      ! Range of z of the nodes that are held along r, and of r of those held along z.
-      real(wp) :: low(2), high(2), near
-      logical :: turn_held
-      integer :: i, k
-
-      low = huge(low)
-      high = -huge(high)
-      turn_held = .false.
-      associate (x => model%domain%mesh%x, groups => model%domain%mesh%groups)
-         near = NEAR_SHARE*maxval([(maxval(x(i, :), mask=mine) - minval(x(i, :), mask=mine), i=1, 2)])
-         do i = 1, size(model%fixes)
-            associate (fix => model%fixes(i))
-               if (fix%field > DISPLACEMENTS .or. .not. acts_in(fix%stages, stage%name)) cycle
-               do k = 1, size(groups(fix%group)%nodes)
-                  associate (node => groups(fix%group)%nodes(k), field => fix%field)
-                     if (.not. mine(node)) cycle
-                     turn_held = turn_held .or. fix%of_body
-                     if (fix%of_body) cycle
-                     low(field) = min(low(field), x(3 - field, node))
-                     high(field) = max(high(field), x(3 - field, node))
-                  end associate
+         before = 0
+         do while (any(body /= before))
+            before = body
+            do e = 1, size(mesh%t6, 2)
+               body(mesh%t6(:, e)) = minval(body(mesh%t6(:, e)))
+            end do
+            do i = 1, size(body)
+               do f = 1, DISPLACEMENTS
+                  if (leader(f, i) == 0) cycle
+                  body([i, leader(f, i)]) = minval(body([i, leader(f, i)]))
+                  if (abs(mesh%x(3 - f, i) - mesh%x(3 - f, leader(f, i))) > near) always(TURN, i) = .true.
                end do
-            end associate
-         end do
-         do i = 1, size(model%ties)
-            do k = 1, size(model%ties(i)%pairs, 2)
-               associate (pair => model%ties(i)%pairs(:, k))
-                  if (mine(pair(1))) turn_held = turn_held .or. any(abs(x(:, pair(1)) - x(:, pair(2))) > near)
+            end do
+            do i = 1, size(plates)
+               if (plates(i)%group == 0) cycle
+               associate (nodes => [mesh%groups(plates(i)%group)%nodes, plates(i)%coordinates%node])
+                  body(nodes) = minval(body(nodes))
                end associate
             end do
          end do
-         do i = 1, size(model%plates)
-            ! What springs tie to a plate moves as any rigid body does.
-            if (model%plates(i)%group == 0 .or. model%plates(i)%penalty > 0.0_wp) cycle
-            associate (nodes => groups(model%plates(i)%group)%nodes)
-               if (mine(nodes(1))) turn_held = turn_held .or. any(abs(x(1, nodes) - x(1, nodes(1))) > near)
+      end associate
+   end subroutine find_bodies
+
+   !> Adds what the supports of a stage hold, and says what its contacts touch: a plate may slide along one that has no
+   !> friction.
+   pure subroutine add_supports(model, stage, held, touched)
+      type(model_t), intent(in) :: model
+      character(*), intent(in) :: stage            !< Its name.
+      logical, intent(inout) :: held(:, :)         !< (TURN, nodes)
+      logical, intent(out) :: touched(:, :)        !< Likewise.
+      integer :: i
+
+      touched = .false.
+      associate (groups => model%domain%mesh%groups)
+         do i = 1, size(model%fixes)
+            associate (fix => model%fixes(i))
+               if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, stage)) &
+                  held(merge(TURN, fix%field, fix%of_body), groups(fix%group)%nodes) = .true.
+            end associate
+         end do
+         do i = 1, size(model%contacts)
+            associate (one => model%contacts(i))
+               if (.not. acts_in(one%stages, stage)) cycle
+               touched(:, groups(one%slave)%nodes) = .true.
+               if (one%plate == 0) then
+                  touched(:, groups(one%master)%nodes) = .true.
+               else
+                  touched(AT_U_Z:, model%plates(one%plate)%node) = .true.
+                  if (has_friction(one%options)) touched(AT_U_R, model%plates(one%plate)%node) = .true.
+               end if
             end associate
          end do
       end associate
-      motion = 0
-      if (.not. (turn_held .or. any(high > low + near) .or. model%domain%axisymmetric)) motion = TURN
-      if (low(AT_U_Z) > high(AT_U_Z)) motion = AT_U_Z
-      if (low(AT_U_R) > high(AT_U_R) .and. .not. model%domain%axisymmetric) motion = AT_U_R
-   end function free_motion
+   end subroutine add_supports
 
-   !> A body by groups that belong to it, and by where it is.
+   !> A plate by its name, another body by groups that belong to it, and by where it is.
    function described(model, mine) result(text)
       type(model_t), intent(in) :: model
       logical, intent(in) :: mine(:)   !< Its nodes.
       character(:), allocatable :: text
       integer :: i, n
 
+      do i = 1, size(model%plates)
+         text = 'the plate '''//trim(model%plates(i)%name)//''''
+         if (mine(model%plates(i)%node) .and. model%plates(i)%group == 0) return
+      end do
       text = ''
       n = 0
       associate (mesh => model%domain%mesh)

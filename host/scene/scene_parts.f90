@@ -14,7 +14,8 @@ module scene_parts
    implicit none (type, external)
    private
    public :: scene_item_t, amplitude_t, stage_t
-   public :: initial_values_t, fix_values_t, load_values_t, plate_values_t, contact_values_t, named_point_t
+   public :: initial_values_t, acting_values_t, fix_values_t, load_values_t, plate_values_t, contact_values_t, &
+             named_point_t
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
    public :: PRESCRIBED_P_A, PRESCRIBED_OF_BODY
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
@@ -77,22 +78,23 @@ module scene_parts
       logical :: net = .true.           !< K_0 acts on the net stress where p_c > 0.
    end type initial_values_t
 
-   type, extends(scene_item_t) :: fix_values_t
+   !> A value that acts on a group, as it is or by a load.
+   type, extends(scene_item_t) :: acting_values_t
       character(LENGTH) :: group_name = ''
-      integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
-      real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp, from = -NEVER, until = NEVER
-      logical :: hold = .false., acceleration = .false.
-      logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
-      logical :: of_body = .false.                   !< The value is that of a coordinate of a plate alone.
-      character(LENGTH), allocatable :: stages(:)
-   end type fix_values_t
-
-   type, extends(scene_item_t) :: load_values_t
-      character(LENGTH) :: group_name = ''
-      integer :: kind = 0                            !< LOAD_...
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
       logical :: of_body = .false.                   !< It acts on a coordinate of a plate alone.
       character(LENGTH), allocatable :: stages(:)
+   end type acting_values_t
+
+   type, extends(acting_values_t) :: fix_values_t
+      integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
+      real(wp) :: from = -NEVER, until = NEVER
+      logical :: hold = .false., acceleration = .false.
+      logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
+   end type fix_values_t
+
+   type, extends(acting_values_t) :: load_values_t
+      integer :: kind = 0                            !< LOAD_...
    end type load_values_t
 
    !> A rigid plate: one with a face of its own that presses through a contact, or one that is joined to a boundary of

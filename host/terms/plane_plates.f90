@@ -12,7 +12,7 @@ module plane_plates
    use model_types, only: model_t, plate_t, coordinate_t
    use namelists, only: group_t
    use plate_motion, only: plate_motion_t
-   use scene_parts, only: scene_item_t, place_of
+   use scene_parts, only: acting_values_t, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: scene_t, groups_named
    use triangle_mesh, only: find_group
@@ -84,7 +84,6 @@ contains
       type(group_t), allocatable :: groups(:)
       type(key_table_t) :: table
       type(given_t) :: given
-      type(coordinate_t) :: rotation
       integer :: i
 
       there = .false.   ! A body with other unknowns is all that a run sees.
@@ -112,22 +111,10 @@ contains
          if (fault%code /= 0) return
       end do
       do i = 1, size(model%fixes)
-         associate (one => model%fixes(i))
-            if (.not. one%of_body) cycle
-            call find_rotation(model, one%group_name, one, rotation, fault)
-            one%group = rotation%group
-            one%value = one%value*rotation%unit
-            one%value_slope = one%value_slope*rotation%unit
-         end associate
+         call act_on_rotation(model%plates, .true., model%fixes(i)%acting_values_t, model%fixes(i)%group, fault)
       end do
       do i = 1, size(model%loads)
-         associate (one => model%loads(i))
-            if (.not. one%of_body) cycle
-            call find_rotation(model, one%group_name, one, rotation, fault)
-            one%group = rotation%group
-            one%value = one%value/rotation%unit
-            one%value_slope = one%value_slope/rotation%unit
-         end associate
+         call act_on_rotation(model%plates, .false., model%loads(i)%acting_values_t, model%loads(i)%group, fault)
       end do
    end subroutine build
 
@@ -180,23 +167,28 @@ contains
       model%domain%bodies_along_r = [model%domain%bodies_along_r, plate%node]
    end subroutine free_in_plane
 
-   !> The rotation of the plate that a scene names. Fault EXIT_INPUT: there is none.
-   subroutine find_rotation(model, name, item, rotation, fault)
-      type(model_t), intent(in) :: model
-      character(*), intent(in) :: name
-      class(scene_item_t), intent(in) :: item
-      type(coordinate_t), intent(out) :: rotation
+   !> Lets a rotation or a moment act on the unknown of the plate that it names. Fault EXIT_INPUT: there is none.
+   subroutine act_on_rotation(plates, moves, one, group, fault)
+      type(plate_t), intent(in) :: plates(:)
+      logical, intent(in) :: moves   !< A rotation, else a moment.
+      type(acting_values_t), intent(inout) :: one
+      integer, intent(inout) :: group
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      do i = 1, size(model%plates)
-         if (model%plates(i)%name /= name .or. size(model%plates(i)%coordinates) < TURN) cycle
-         rotation = model%plates(i)%coordinates(TURN)
+      if (.not. one%of_body) return
+      do i = 1, size(plates)
+         if (plates(i)%name /= one%group_name .or. size(plates(i)%coordinates) < TURN) cycle
+         associate (rotation => plates(i)%coordinates(TURN))
+            group = rotation%group
+            one%value = merge(one%value*rotation%unit, one%value/rotation%unit, moves)
+            one%value_slope = merge(one%value_slope*rotation%unit, one%value_slope/rotation%unit, moves)
+         end associate
          return
       end do
-      if (fault%code == 0) call raise(fault, EXIT_INPUT, place_of(item)//'a rotation and a moment are those of a '// &
-                                      '&plate with motion = ''plane'', and '''//trim(name)//''' is none.')
-   end subroutine find_rotation
+      if (fault%code == 0) call raise(fault, EXIT_INPUT, place_of(one)//'a rotation and a moment are those of a '// &
+                                      '&plate with motion = ''plane'', and '''//trim(one%group_name)//''' is none.')
+   end subroutine act_on_rotation
 
    !> Rotations are exact, and small ones do not vanish beside coordinates. docs/theory/contact.md section 4.
    pure function displacements(self, x0, q) result(u)
