@@ -16,11 +16,19 @@ NUDGES = (1e-13, -1e-13, 1e-12, -1e-12)
 
 
 def test_rounding_of_a_strain_decides_nothing_at_an_event():
-    # Where the event that ended a substep is met again by rounding, the sizes of the substeps after it stay. Otherwise
-    # 18 of these increments jump, at most by 8e-4 of the stress. Of 28,800 like them 2 jump, and 101 otherwise.
-    random = np.random.default_rng(7)
-    sand = mud.Material("toyoura")
+    # Where the event that ended a substep is met again by rounding, the sizes of the substeps after it stay: otherwise
+    # 18 increments of the first walks jump, at most by 8e-4 of the stress. Whether shear turns only because the
+    # isotropic mechanism rests is not asked where a reversal was located: otherwise two of the second and five of the
+    # third jump, at most by 2e-3.
     jumps = []
+    for name, seed in (("toyoura", 7), ("toyoura", 69), ("karlsruhe_cyclic", 47)):
+        jumps += [(name, *found) for found in jumps_of_walks(mud.Material(name), seed)]
+    check("of 10,800 increments none jumps", not jumps, jumps)
+
+
+def jumps_of_walks(sand, seed):
+    """(walk, step, largest change of the stress) of increments whose answer does not follow their strain."""
+    random = np.random.default_rng(seed)
     for path in range(60):
         pressure = 10.0**random.uniform(1.0, 2.5)
         start = -pressure*np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
@@ -34,6 +42,5 @@ def test_rounding_of_a_strain_decides_nothing_at_an_event():
             others = [sand.update(stress, statev, (1.0 + nudge)*strain).stress for nudge in NUDGES]
             moved = max(np.abs(other - answer.stress).max() for other in others)
             if moved > 1e-9*np.abs(answer.stress).max():
-                jumps.append((path, step, moved))
+                yield path, step, moved
             stress, statev = answer.stress, answer.statev
-    check("of 3600 increments at most one jumps", len(jumps) <= 1, jumps)

@@ -159,8 +159,9 @@ contains
       if (it%event /= EVENT_FORWARDS) then
          if (it%trial%w(1)%x >= 0.0_wp) return
          noise = it%trial%w(1)%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL
-         if (.not. noise) call turns_by_resting(par, it%inc, it%trial, it%trial%time, it%trial%y0, it%state%margin, &
-                                                it%counters, noise)
+         ! At a place that was located x is -x_rev but for rounding: there it was asked at the end of the substep.
+         if (.not. noise .and. it%event /= EVENT_REVERSAL) call turns_by_resting( &
+            par, it%inc, it%trial, it%trial%time, it%trial%y0, it%state%margin, it%counters, noise)
          if (noise) then
             it%counters%hysteresis = it%counters%hysteresis + 1
             return
