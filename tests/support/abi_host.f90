@@ -6,7 +6,7 @@ module abi_host
    use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepare, mud_init, mud_update, &
       mud_message, MUD_TANGENT_ELASTIC, mud_default_props
    use mud_kinds, only: wp
-   use mud_registry, only: NPROPS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, P_HYSTERESIS, P_MEMORY_RULE, P_SCHEME, &
+   use mud_registry, only: NPROPS, NSTATV, NSTATV_BASE, P_HYSTERESIS, P_MEMORY_RULE, P_SCHEME, &
       P_X_0, P_X_REV, P_CAP_D, P_CAP_H, P_CUTOFF, RULE_CLASSIC, RULE_RETURN_POINT, SCHEME_OF_PAPER, S_LAYOUT, &
       S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_tensor, only: is_finite
@@ -276,7 +276,7 @@ contains
       code = mud_prepare(props, n_props, material, size(material), text, LONG)
       stress = stress0
       statev = statev0
-      if (code == 0 .and. n_statev >= NSTATV_WITHOUT_HYSTERESIS) then
+      if (code == 0 .and. n_statev >= NSTATV_BASE) then
          began = .true.
          if (is_finite(statev0(S_LAYOUT))) began = abs(statev0(S_LAYOUT)) > 0.0_wp
          if (.not. began) then

@@ -5,7 +5,7 @@ module meshes
    use abi_host, only: random_strain, prepared_of, default_props
    use mud_interface, only: mud_report, mud_points, mud_init_points, mud_update_points, MUD_TANGENT_NONE
    use mud_kinds, only: wp
-   use mud_registry, only: NPROPS, NSTATV => NSTATV_WITHOUT_HYSTERESIS, P_SCHEME, P_TOLERANCE
+   use mud_registry, only: NPROPS, NSTATV => NSTATV_BASE, P_SCHEME, P_TOLERANCE
    use random_states, only: random_t
    implicit none (type, external)
    private

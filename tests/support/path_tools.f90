@@ -12,7 +12,6 @@ module path_tools
    use mud_rate, only: rate_t
    use mud_rates, only: rate_at, conditions_t, MODE_ORDINARY
    use mud_registry, only: NPROPS, P_RHO_E
-   use mud_scanning, only: path_t, saturation_after
    use mud_state, only: state_t, counters_t
    use mud_status, only: mud_status_t
    use mud_tensor, only: IDENTITY, trace, norm
@@ -22,7 +21,8 @@ module path_tools
    use random_states, only: random_t, uniform
    use mud_fluidity, only: Y_FLUIDITY
    use mud_preloading, only: log_contraction, NO_CONTRACTION, Y_LOG_CHI
-   use mud_retention, only: retention_t, saturation_t, log_suction, on_main_curve_t, on_main_curve, main_curve
+   use mud_retention, only: retention_t, saturation_t, log_suction, on_main_curve_t, on_main_curve, main_curve, &
+      path_t, saturation_after
    use mud_vector, only: NY, Y_Z, Y_Z_END
    implicit none (type, external)
    private
@@ -276,7 +276,7 @@ contains
       counts%floor = counts%floor + more%floor
       counts%cap_d = counts%cap_d + more%cap_d
       counts%cap_h = counts%cap_h + more%cap_h
-      counts%hysteresis = counts%hysteresis + more%hysteresis
+      counts%hysteresis = counts%hysteresis + more%held_back
       counts%iso_kept = counts%iso_kept + more%iso_kept
       counts%no_root = counts%no_root + more%no_root
       counts%min_step = counts%min_step + more%min_step

@@ -5,7 +5,7 @@ module mud_arguments
    use mud_host_increment, only: suction_change
    use mud_kinds, only: wp, NOTHING
    use mud_params, only: completed, is_length
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, P_SHEAR_ORDER, &
+   use mud_registry, only: NPROPS, NPROPS_BASE, NSTATV_BASE, P_SHEAR_ORDER, &
       S_LAYOUT, S_SUCTION
    use mud_status, only: fail, mud_status_t, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
@@ -71,10 +71,10 @@ contains
       end if
       n = integer_at(nprops_)
       if (n < 1) status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(n, wp), &
-                                    real(NPROPS_WITHOUT_HYSTERESIS, wp), real(NPROPS, wp))
+                                    real(NPROPS_BASE, wp), real(NPROPS, wp))
       n = integer_at(nstatv_)
-      if (n < NSTATV_WITHOUT_HYSTERESIS) &
-         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV_WITHOUT_HYSTERESIS, wp), huge(1.0_wp))
+      if (n < NSTATV_BASE) &
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV_BASE, wp), huge(1.0_wp))
    end subroutine check_arguments
 
    !> True of a STATEV that has been initialised, by whatever layout. A layout that is not finite is no past.

@@ -9,8 +9,8 @@ module mud_batch
    use mud_params, only: params_t
    use mud_prepared, only: prepared_t, find_materials
    use mud_refusals, only: place_t, remark_on_begun, remark_on_void_ratio
-   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
-   use mud_retention, only: saturation_t, saturation
+   use mud_registry, only: NSTATV, NSTATV_BASE, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
+   use mud_retention, only: saturation_t, saturation, read_preset
    use mud_retention_point, only: state_saturation
    use mud_state, only: statev_size, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_STATEV, &
@@ -150,7 +150,7 @@ contains
       end select
       if (.not. complete) then
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-      else if (given%n_statev < NSTATV_WITHOUT_HYSTERESIS) then
+      else if (given%n_statev < NSTATV_BASE) then
          status = fail(MUD_BAD_NSTATV, ON_STATEV)
       else if (given%n < 0 .or. kind_of(given%tangent) < 0) then
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT)
@@ -246,7 +246,7 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: suction, void_ratio, preset
       type(saturation_t) :: sat
-      real(wp) :: e
+      real(wp) :: e, given
 
       s_w = 0.0_wp
       if (.not. (is_finite(suction) .and. is_finite(void_ratio) .and. is_finite(preset))) return
@@ -255,7 +255,8 @@ contains
       if (e <= E_LOWER .or. e >= E_UPPER) return
       sat = saturation(par%suction%retention_t, suction, e)
       s_w = sat%s_w
-      if (par%hysteresis .and. preset > 0.0_wp) s_w = preset
+      given = read_preset(par%suction%retention_t, preset)
+      if (given > 0.0_wp) s_w = given
    end function first_saturation
 
    !> An increment of point j.

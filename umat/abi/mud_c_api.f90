@@ -10,7 +10,7 @@ module mud_c_api
    use mud_registry, only: OPTIONS, NPROPS, NSTATV, PROPERTIES, VARIABLES, property_index, property_meaning, &
       statev_index, statev_name, &
       statev_variable
-   use mud_scanning, only: check_curves
+   use mud_retention, only: check_retention
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_INPUT, &
       ON_ARGUMENT
    use mud_tensor, only: is_finite
@@ -234,7 +234,7 @@ contains
    end function mud_default_props
 
    !> Status of PROPS in the unit of p_atm and a sentence: the first fault, 'no error', or a warning where units seem
-   !> mixed. Codes of read_params and check_curves, MUD_NULL_ARGUMENT.
+   !> mixed. Codes of read_params and check_retention, MUD_NULL_ARGUMENT.
    integer(c_int) function mud_validate_props(props, n_props, text, len) bind(c, name='mud_validate_props')
       type(c_ptr), value :: props, text
       integer(c_int), value :: n_props, len
@@ -247,7 +247,7 @@ contains
          call c_f_pointer(props, values, [max(n_props, 0)])
          call read_params(values, par, status)
          if (status%code == MUD_OK) call check_bounds(completed(values), 1, NPROPS, status)
-         if (status%code == MUD_OK .and. par%hysteresis) call check_curves(par%suction%retention_t, status)
+         call check_retention(par%suction%retention_t, status)
       else
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       end if

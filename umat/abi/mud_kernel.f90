@@ -11,9 +11,9 @@ module mud_kernel
    use mud_blocks, only: blocks_t
    use mud_start, only: initial_state
    use mud_rates, only: stress_ratio
-   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
+   use mud_registry, only: NSTATV, NSTATV_BASE, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
       S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
-   use mud_scanning, only: check_curves, check_saturation
+   use mud_retention, only: check_preset, check_retention, check_saturation
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
@@ -89,25 +89,13 @@ contains
       preset = 0.0_wp
       if (present(saturation)) preset = saturation
       if (size(statev) < statev_size(par%options_t)) status = wrong_nstatv(size(statev), par%options_t)
-      if (status%code == MUD_OK .and. .not. par%hysteresis) call refuse_preset(preset, status)
+      call check_preset(par%suction%retention_t, preset, status)
       if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, preset, state, packed, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)
       statev(1:statev_size(par%options_t)) = packed(1:statev_size(par%options_t))
    end subroutine kernel_begin
-
-   !> Refuses a degree of saturation of the start without hysteresis: S_w is a function of suction and void ratio there,
-   !> and another one would be lost in silence.
-   pure subroutine refuse_preset(preset, status)
-      real(wp), intent(in) :: preset
-      type(mud_status_t), intent(inout) :: status
-      logical :: given
-
-      given = .not. is_finite(preset)
-      if (.not. given) given = abs(preset) > 0.0_wp
-      if (given) status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, preset, 0.0_wp, 0.0_wp)
-   end subroutine refuse_preset
 
    !> One increment. Tension positive; statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV.
    !> MUD_BAD_OPTION for an unknown tangent, codes of unpack_state or initial_state and of update_point. On failure
@@ -172,7 +160,7 @@ contains
       end if
       ahead = direction
       suction_ahead = d_suction
-      if (maxval(abs(direction)) <= 0.0_wp .and. size(statev) >= NSTATV_WITHOUT_HYSTERESIS) then
+      if (maxval(abs(direction)) <= 0.0_wp .and. size(statev) >= NSTATV_BASE) then
          ahead = statev(S_ELASTIC_DOMAIN:S_ELASTIC_DOMAIN + 5)*[-1.0_wp, -1.0_wp, -1.0_wp, -2.0_wp, -2.0_wp, -2.0_wp]
          if (.not. all(is_finite(ahead))) ahead = 0.0_wp   ! said by the update
          if (abs(d_suction) > 0.0_wp .and. maxval(abs(ahead)) > 0.0_wp) &
@@ -229,9 +217,7 @@ contains
          call initialise(par, stress, suction, statev(S_VOID_RATIO), statev(S_SATURATION), state, packed, status)
       else
          call unpack_state(statev, par%options_t, state, status)
-         if (par%hysteresis .and. status%code == MUD_OK) then
-            call check_saturation(par%suction%retention_t, state%p_c, state%e, state%s_w, status)
-         end if
+         call check_saturation(par%suction%retention_t, state%p_c, state%e, state%s_w, status)
          call keep_totals(statev_size(par%options_t), statev, packed)
          state%sigma = -stress
          state%p_c = suction
@@ -246,7 +232,7 @@ contains
       real(wp), intent(inout), contiguous :: to(:)
 
       to(S_N_RATE:S_N_TENSILE) = from(S_N_RATE:S_N_TENSILE)
-      if (n > NSTATV_WITHOUT_HYSTERESIS) to(S_TURNS:n) = from(S_TURNS:n)
+      if (n > NSTATV_BASE) to(S_TURNS:n) = from(S_TURNS:n)
    end subroutine keep_totals
 
    !> The numbers of a point, most at once: their count is known. Units as in mud_registry; from and to have the n
@@ -256,12 +242,12 @@ contains
       real(wp), intent(in), contiguous :: from(:)
       real(wp), intent(inout), contiguous :: to(:)
 
-      to(1:NSTATV_WITHOUT_HYSTERESIS) = from(1:NSTATV_WITHOUT_HYSTERESIS)
-      if (n > NSTATV_WITHOUT_HYSTERESIS) to(S_TURNS:n) = from(S_TURNS:n)
+      to(1:NSTATV_BASE) = from(1:NSTATV_BASE)
+      if (n > NSTATV_BASE) to(S_TURNS:n) = from(S_TURNS:n)
    end subroutine copy_statev
 
    !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min. Codes of
-   !> check_curves, initial_state and check_strength.
+   !> check_retention, initial_state and check_strength.
    pure subroutine initialise(par, stress, suction, void_ratio, s_w, state, packed, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), suction, void_ratio
@@ -276,7 +262,7 @@ contains
          if (abs(e) <= 0.0_wp) e = par%e_0
       end if
       packed = 0.0_wp
-      if (par%hysteresis) call check_curves(par%suction%retention_t, status)
+      call check_retention(par%suction%retention_t, status)
       if (status%code /= MUD_OK) return
       call initial_state(par, -stress, e, suction, state, status, s_w)
       if (status%code == MUD_OK) call check_strength(par, state, status)
@@ -397,7 +383,7 @@ contains
       report%n_floor = counters%floor
       report%n_cap_d = counters%cap_d
       report%n_cap_h = counters%cap_h
-      report%n_hysteresis = counters%hysteresis
+      report%n_hysteresis = counters%held_back
       report%n_iso_kept = counters%iso_kept
       report%n_no_root = counters%no_root
       report%n_min_step = counters%min_step

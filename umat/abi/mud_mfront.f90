@@ -10,7 +10,7 @@ module mud_mfront
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
    use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked
-   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, NSTATV => NSTATV_WITHOUT_HYSTERESIS, &
+   use mud_registry, only: NPROPS_BASE, NSTATV => NSTATV_BASE, &
       S_VOID_RATIO, S_SATURATION, S_SUCTION
    use mud_retention, only: saturation_t, saturation
    use mud_state, only: E_LOWER, E_UPPER
@@ -321,7 +321,7 @@ contains
       call c_f_pointer(view%s1%gradients, point%gradient1, [n_forces])
       call c_f_pointer(view%s0%forces, point%force0, [n_forces])
       call c_f_pointer(view%s1%forces, point%force1, [n_forces])
-      call c_f_pointer(view%s1%material_properties, point%props, [NPROPS_WITHOUT_HYSTERESIS])
+      call c_f_pointer(view%s1%material_properties, point%props, [NPROPS_BASE])
       call c_f_pointer(view%s0%internal_state_variables, point%state0, [NSTATV])
       call c_f_pointer(view%s1%internal_state_variables, point%state1, [NSTATV])
    end subroutine find_arrays

@@ -8,7 +8,7 @@ module mud_prepared
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
    use mud_registry, only: NPROPS
-   use mud_scanning, only: check_curves, find_least
+   use mud_retention, only: check_retention, prepare_retention
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_to_host, only: put
@@ -48,7 +48,7 @@ contains
    end function mud_prepared_statev
 
    !> Checks PROPS and writes the material; on an error the storage is no prepared material. MUD_NULL_ARGUMENT,
-   !> MUD_NOT_PREPARED where size_ (doubles) is too small, else the codes of read_params and check_curves; text says
+   !> MUD_NOT_PREPARED where size_ (doubles) is too small, else the codes of read_params and check_retention; text says
    !> which. Stresses in the unit of p_atm.
    integer(c_int) function mud_prepare(props, n_props, storage, size_, text, len) bind(c, name='mud_prepare')
       type(c_ptr), value :: props, storage, text
@@ -66,10 +66,8 @@ contains
          call c_f_pointer(props, values, [max(n_props, 0)])
          call c_f_pointer(storage, material)
          call read_params(values, par, status)
-         if (status%code == MUD_OK .and. par%hysteresis) then
-            call check_curves(par%suction%retention_t, status)
-            par%suction%least = find_least(par%suction%retention_t)
-         end if
+         call check_retention(par%suction%retention_t, status)
+         if (status%code == MUD_OK) call prepare_retention(par%suction%retention_t)
          material%head = 0
          material%tail = 0
          if (status%code == MUD_OK) then

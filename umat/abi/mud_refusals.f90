@@ -14,6 +14,7 @@ module mud_refusals
    use mud_once, only: first_time, write_message, report_at_exit, environment_is
    use mud_params, only: params_t
    use mud_registry, only: NPROPS, NSTATV, P_TANGENT, S_VOID_RATIO, S_SATURATION
+   use mud_retention, only: read_preset
    use mud_save, only: write_increment, PATH_LENGTH
    use mud_status, only: MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
@@ -215,7 +216,7 @@ contains
       if (has_past(statev)) return
       begun = stress
       call kernel_begin(par, begun, suction, statev(S_VOID_RATIO), filled(:size(statev)), report, &
-                        merge(statev(S_SATURATION), 0.0_wp, par%hysteresis))
+                        read_preset(par%suction%retention_t, statev(S_SATURATION)))
       if (report%status == MUD_OK) call remark_on_begun(par, stress, filled, place)
    end subroutine remark_on_start
 

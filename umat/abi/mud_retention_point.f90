@@ -6,9 +6,8 @@ module mud_retention_point
    use mud_prepared, only: prepared_t, find_prepared
    use mud_params, only: params_t
    use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_VOID_RATIO, S_GAP, S_SATURATION, S_SUCTION
-   use mud_retention, only: retention_t, saturation_t, saturation, log_suction
-   use mud_scanning, only: path_t, keep_turns, saturation_after, check_saturation
-   use mud_state, only: state_t, unpack_state, E_LOWER, E_UPPER
+   use mud_retention, only: saturation_t, saturation, saturation_from, turns_t
+   use mud_state, only: unpack_turns, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_BAD_VOID_RATIO, MUD_BAD_STATE, ON_STATEV, &
       ON_SUCTION
    use mud_tensor, only: is_finite
@@ -53,6 +52,7 @@ contains
       type(saturation_t), intent(inout) :: sat   !< Untouched where it is refused.
       type(mud_status_t), intent(out) :: status
       integer, parameter :: READ(5) = [S_LAYOUT, S_VOID_RATIO, S_GAP, S_SATURATION, S_SUCTION]
+      type(turns_t) :: turns
       integer :: i
 
       if (.not. is_finite(suction)) then
@@ -68,31 +68,11 @@ contains
       else if (statev(S_VOID_RATIO) <= E_LOWER .or. statev(S_VOID_RATIO) >= E_UPPER + statev(S_GAP)) then
          status = fail(MUD_BAD_STATE, ON_STATEV, S_VOID_RATIO, statev(S_VOID_RATIO), E_LOWER, &
                        E_UPPER + statev(S_GAP))
-      else if (par%hysteresis) then
-         call scanned_saturation(par, statev, suction, sat, status)
       else
-         sat = saturation(par%suction%retention_t, suction, statev(S_VOID_RATIO))
+         call unpack_turns(statev, par%options_t, turns, status)
+         if (status%code == MUD_OK) call saturation_from(par%suction%retention_t, statev(S_SUCTION), &
+                                                         statev(S_VOID_RATIO), statev(S_SATURATION), turns, suction, &
+                                                         sat, status)
       end if
    end subroutine state_saturation
-
-   !> Degree of saturation after a change of suction at constant void ratio, as the next update has it.
-   pure subroutine scanned_saturation(par, statev, suction, sat, status)
-      type(params_t), intent(in) :: par
-      real(wp), intent(in), contiguous :: statev(:)
-      real(wp), intent(in) :: suction
-      type(saturation_t), intent(inout) :: sat
-      type(mud_status_t), intent(out) :: status
-      type(state_t) :: state
-      type(path_t) :: path
-      type(retention_t) :: branch
-      logical :: cleared
-
-      call unpack_state(statev, par%options_t, state, status)
-      if (status%code == MUD_OK) call check_saturation(par%suction%retention_t, state%p_c, state%e, &
-                                                             state%s_w, status)
-      if (status%code /= MUD_OK) return
-      path = path_t(log_suction(par%suction%retention_t, state%p_c, state%e), state%s_w, state%turns)
-      call keep_turns(par%suction%retention_t, path, cleared)
-      call saturation_after(par%suction%retention_t, suction, state%e, path, sat, branch)
-   end subroutine scanned_saturation
 end module mud_retention_point

@@ -13,6 +13,7 @@ module mud_save
    use mud_prepared, only: prepared_t, find_prepared
    use mud_registry, only: NPROPS, NSTATV, P_TANGENT, PROPERTIES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
       S_SUCTION, statev_name
+   use mud_retention, only: read_preset
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
@@ -194,8 +195,7 @@ contains
       if (abs(statev(S_LAYOUT)) > 0.0_wp) return
       call read_params(props, par, status)
       if (status%code /= MUD_OK) return
-      preset = 0.0_wp
-      if (par%hysteresis) preset = statev(S_SATURATION)
+      preset = read_preset(par%suction%retention_t, statev(S_SATURATION))
       call kernel_begin(par, stress, suction, statev(S_VOID_RATIO), statev, report, preset)
    end subroutine begin_as_umat
 

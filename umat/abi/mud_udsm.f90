@@ -11,8 +11,8 @@ module mud_udsm
    use mud_params, only: params_t, read_params, completed
    use mud_pieces, only: update_in_pieces
    use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked
-   use mud_registry, only: NPROPS_WITHOUT_HYSTERESIS, &
-      NSTATV => NSTATV_WITHOUT_HYSTERESIS, PROPERTIES, VARIABLES, statev_name, statev_variable, &
+   use mud_registry, only: NPROPS_BASE, &
+      NSTATV => NSTATV_BASE, PROPERTIES, VARIABLES, statev_name, statev_variable, &
       S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_tensor, only: is_finite
@@ -94,7 +94,7 @@ contains
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(imod, wp))
       else if (idtask /= HOW_MANY .and. idtask /= ATTRIBUTES) then
          if (c_associated(props) .and. c_associated(sig0) .and. c_associated(stvar0)) then
-            call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
+            call c_f_pointer(props, values, [NPROPS_BASE])
             call read_params(values, par, status)
          else
             status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
@@ -112,7 +112,7 @@ contains
       real(c_double), pointer, contiguous :: values(:), state(:)
       real(wp) :: stress(6)
 
-      call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
+      call c_f_pointer(props, values, [NPROPS_BASE])
       call remark_on_props(completed(values), place)
       stress = read_six(sig0)
       if (.not. all(is_finite(stress))) return   ! said by the update
@@ -148,11 +148,11 @@ contains
       call remark_on_start(par, stress0, state0, state0(S_SUCTION), place)
       call update_in_pieces(par, stress0, state0, strain, state0(S_SUCTION), 0.0_wp, 0, output, report)
       if (report%status /= MUD_OK) then
-         call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
+         call c_f_pointer(props, values, [NPROPS_BASE])
          call save_if_asked(completed(values), stress0, state0, strain, state0(S_SUCTION), 0.0_wp, place, report)
          return
       end if
-      call c_f_pointer(props, values, [NPROPS_WITHOUT_HYSTERESIS])
+      call c_f_pointer(props, values, [NPROPS_BASE])
       if (.not. has_past(state0)) call remark_on_props(completed(values), place)
       call remark_on_end(output%stress, output%statev, place)
       if (c_associated(ipl)) then
@@ -235,7 +235,7 @@ contains
       integer(c_int), intent(in) :: imod
       integer(c_int), intent(out) :: n
 
-      n = merge(NPROPS_WITHOUT_HYSTERESIS, 0, imod == 1)
+      n = merge(NPROPS_BASE, 0, imod == 1)
    end subroutine param_count
 
    !> Name of parameter i from 1, empty if there is none.
@@ -244,7 +244,7 @@ contains
       character(kind=c_char), intent(inout) :: name(*)
 
       call put_pascal('', name)
-      if (known(imod, i, NPROPS_WITHOUT_HYSTERESIS)) call put_pascal(PROPERTIES(i)%name, name)
+      if (known(imod, i, NPROPS_BASE)) call put_pascal(PROPERTIES(i)%name, name)
    end subroutine param_name
 
    !> Unit of parameter i from 1 in the letters of PLAXIS, empty if there is none.
@@ -253,7 +253,7 @@ contains
       character(kind=c_char), intent(inout) :: unit(*)
 
       call put_pascal('', unit)
-      if (known(imod, i, NPROPS_WITHOUT_HYSTERESIS)) call put_pascal(unit_word(PROPERTIES(i)%unit), unit)
+      if (known(imod, i, NPROPS_BASE)) call put_pascal(unit_word(PROPERTIES(i)%unit), unit)
    end subroutine param_unit
 
    !> Number of state variables of a model, 0 if imod is not 1.

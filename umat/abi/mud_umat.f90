@@ -9,7 +9,7 @@ module mud_umat
    use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_start, remark_on_end, &
       remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
    use mud_params, only: params_t, read_params, options_of, completed, is_length
-   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, S_SUCTION
+   use mud_registry, only: NSTATV, NSTATV_BASE, S_SUCTION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK
    implicit none (type, external)
@@ -80,7 +80,7 @@ contains
       type(place_t), intent(in) :: place
       real(c_double), pointer, contiguous :: state(:), times(:)
 
-      call c_f_pointer(statev, state, [NSTATV_WITHOUT_HYSTERESIS])
+      call c_f_pointer(statev, state, [NSTATV_BASE])
       if (begins_late(has_past(state), time, dtime, pnewdt)) then
          call c_f_pointer(time, times, [2])
          call remark_on_late_start(times(2), place)

@@ -13,8 +13,8 @@ module mud_vumat
    use mud_pieces, only: update_in_pieces
    use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked, &
       KEEP_VARIABLE
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, &
-      NSTATV_WITHOUT_HYSTERESIS, S_SUCTION
+   use mud_registry, only: NPROPS, NPROPS_BASE, NSTATV, &
+      NSTATV_BASE, S_SUCTION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NTENS, MUD_BAD_NSTATV, MUD_BAD_NPROPS, &
       ON_ARGUMENT, ON_STATEV, ON_PROPS
@@ -116,12 +116,12 @@ contains
          status = fail(MUD_BAD_NTENS, ON_ARGUMENT, 0, real(integer_at(counts(2)), wp), 3.0_wp, 3.0_wp)
       else if (points%n_shear /= 1 .and. points%n_shear /= 3) then
          status = fail(MUD_BAD_NTENS, ON_ARGUMENT, 0, real(points%n_shear + 3, wp), 4.0_wp, 6.0_wp)
-      else if (n_state < NSTATV_WITHOUT_HYSTERESIS) then
-         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_state, wp), real(NSTATV_WITHOUT_HYSTERESIS, wp), &
+      else if (n_state < NSTATV_BASE) then
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_state, wp), real(NSTATV_BASE, wp), &
                        huge(1.0_wp))
       else if (.not. is_length(integer_at(counts(5)))) then
          status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(integer_at(counts(5)), wp), &
-                       real(NPROPS_WITHOUT_HYSTERESIS, wp), real(NPROPS, wp))
+                       real(NPROPS_BASE, wp), real(NPROPS, wp))
       else
          call c_f_pointer(arrays(1), points%props, [integer_at(counts(5))])
          call c_f_pointer(arrays(2), points%strain, [points%n, 3 + points%n_shear])

@@ -3,7 +3,6 @@
 module mud_point
    use mud_kinds, only: wp
    use mud_blocks, only: blocks_t, elastic_blocks, continuum_blocks
-   use mud_branches, only: course_t, begin_course, take_branch, turn_around, end_course
    use mud_checks, only: check_increment
    use mud_consistent, only: sensitivity_t, no_sensitivity
    use mud_cutoff, only: lifted
@@ -14,7 +13,7 @@ module mud_point
    use mud_order, only: look_for_stiffness
    use mud_params, only: params_t
    use mud_phases, only: cut_t, list_cuts, MAX_CUTS
-   use mud_retention, only: saturation_t
+   use mud_retention, only: saturation_t, course_t, begin_course, take_branch, turn_around, end_course
    use mud_start, only: finish_state, has_tension
    use mud_state, only: E_LOWER, E_UPPER, E_OPEN
    use mud_status, only: fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
@@ -56,7 +55,7 @@ contains
       if (follows) call no_sensitivity(it%state%memory%depth, it%inc, sens)
       do i = 1, n
          call take_phase(par, it%reached, cuts(i)%time, it%inc)
-         if (par%hysteresis) call take_branch(course, it%inc)
+         call take_branch(course, it%inc%way_t, it%inc%from, it%inc%to, it%inc%suction%retention_t)
          call begin_phase(par, step, it)
          if (follows) call follow_phase(par, it%inc, cuts(i), sens)
          do while (it%reached < it%inc%to)
@@ -71,7 +70,7 @@ contains
          end do
          call end_phase(step, it)
          if (.not. cuts(i)%turns) cycle
-         call turn_around(it%inc, course)
+         call turn_around(it%inc%way_t, course)
          if (follows) call follow_turn(course%with_increment, sens)
       end do
       call end_update(par, course, it, blocks)
@@ -90,7 +89,7 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: d_strain(6), d_pc
       type(integration_t), intent(inout) :: it
-      type(course_t), intent(out) :: course   !< With hysteresis; otherwise without meaning.
+      type(course_t), intent(out) :: course
       real(wp) :: e, largest
 
       call check_increment(par, it%state, d_strain, d_pc, it%status)
@@ -102,8 +101,9 @@ contains
          it%status = fail(MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO, 0, e, E_LOWER, largest)
          return
       end if
-      if (par%hysteresis) call begin_course(par, it%inc, it%state, it%counters, course)
       associate (state => it%state)
+         call begin_course(par%suction%retention_t, it%inc%way_t, state%s_w, state%turns, it%inc%suction%retention_t, &
+                           it%counters%cleared, course)
          if (par%cutoff) state%sigma = lifted(par, it%inc%suction, state%sigma, state%e, state%p_c)
       end associate
       it%size = extent_of(par, it%inc, it%state)
@@ -123,8 +123,7 @@ contains
       if (it%size > 0.0_wp .and. it%inc%rho > 0.0_wp) it%state%from_centre = end_in_domain(it%inc)
       it%state%e = void_ratio_at(it%inc, 1.0_wp)
       it%state%p_c = suction_at(it%inc, 1.0_wp)
-      with_turn = 0.0_wp
-      if (par%hysteresis) call end_course(it%inc, course, it%state, with_turn)
+      call end_course(it%inc%way_t, course, it%state%s_w, it%state%turns, it%inc%suction%retention_t, with_turn)
       it%inc%suction%bonds = par%suction%bonds   ! the phases are over
       call finish_state(par, it%inc%suction, it%state, sat)
       blocks%dsw_dpc = sat%ds_dpc + with_turn(1)

@@ -3,7 +3,7 @@
 !> behaviours for the generic interface of MFront. Run by the build: mud_write_tables VERSION > mud_tables.c
 program mud_write_tables
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NSTATV, NSTATV_WITHOUT_HYSTERESIS, &
+   use mud_registry, only: NPROPS, NPROPS_BASE, NSTATV, NSTATV_BASE, &
       PROPERTIES, VARIABLES, statev_name, &
       statev_variable
    implicit none (type, external)
@@ -79,10 +79,10 @@ contains
       call list(name//'_', 'ThermodynamicForces', forces)
       call numbers('const int '//name//'_ThermodynamicForcesTypes', types, .true.)
       call list(name//'_', 'TangentOperatorBlocks', blocks)
-      call list(name//'_', 'MaterialProperties', props(:NPROPS_WITHOUT_HYSTERESIS))
-      call list(name//'_', 'InternalStateVariables', PREFIX//statev(:NSTATV_WITHOUT_HYSTERESIS))
+      call list(name//'_', 'MaterialProperties', props(:NPROPS_BASE))
+      call list(name//'_', 'InternalStateVariables', PREFIX//statev(:NSTATV_BASE))
       call numbers('const int '//name//'_InternalStateVariablesTypes', &
-                   [(SCALAR, k=1, NSTATV_WITHOUT_HYSTERESIS)], .true.)
+                   [(SCALAR, k=1, NSTATV_BASE)], .true.)
       call list(name//'_', 'ExternalStateVariables', none)
       call numbers('const int '//name//'_ExternalStateVariablesTypes', no, .true.)
       call list(name//'_', 'Parameters', none)

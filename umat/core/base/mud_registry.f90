@@ -6,7 +6,7 @@ module mud_registry
    implicit none (type, external)
    private
    public :: property_t, variable_t, PROPERTIES, VARIABLES, NPROPS, NSTATV, NVARIABLES, STATE_LAYOUT
-   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_HYSTERESIS, &
+   public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_BASE, NSTATV_BASE, &
              NPROPS_WITHOUT_PRELOADING, NSTATV_WITHOUT_PRELOADING, NPROPS_WITHOUT_FLUIDITY, NSTATV_WITHOUT_FLUIDITY
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
    public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
@@ -123,7 +123,7 @@ module mud_registry
    integer, parameter :: P_C_ELL = 56, P_ELL_MAX = 57, P_P_ELL = 58, P_R_ELL = 59, NPROPS = 59
    !> PROPS may end before hysteresis: it is off, and what follows has its default. Hosts with PROPS of that length, or
    !> with no room for more (PLAXIS: 50), go on as they are.
-   integer, parameter :: NPROPS_WITHOUT_HYSTERESIS = P_HYSTERESIS - 1
+   integer, parameter :: NPROPS_BASE = P_HYSTERESIS - 1
    !> Number of PROPS before cyclic preloading.
    integer, parameter :: NPROPS_WITHOUT_PRELOADING = P_C_CHI - 1
    !> Number of PROPS before the fluidity.
@@ -146,11 +146,11 @@ module mud_registry
    integer, parameter :: S_GAP = S_ELASTIC_DOMAIN + 6
    integer, parameter :: S_MARGIN = S_GAP + 1, S_STACK = S_MARGIN + 1
    !> STATEV may end here without hysteresis.
-   integer, parameter :: NSTATV_WITHOUT_HYSTERESIS = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
+   integer, parameter :: NSTATV_BASE = S_STACK - 1 + ENTRY_SIZE*MAX_INTERRUPTED
    !> Turning points of suction, the oldest first: ln(x/P_a) and S_w of each. Four leave a finite effect of vanishing
    !> noise, six are the least, eight bear noise on five nested loops.
    integer, parameter :: MAX_TURNS = 8
-   integer, parameter :: S_TURNS = NSTATV_WITHOUT_HYSTERESIS + 1, S_N_CLEARED = S_TURNS + 1, S_TURN = S_N_CLEARED + 1
+   integer, parameter :: S_TURNS = NSTATV_BASE + 1, S_N_CLEARED = S_TURNS + 1, S_TURN = S_N_CLEARED + 1
    !> STATEV may end here without cyclic preloading.
    integer, parameter :: NSTATV_WITHOUT_PRELOADING = S_TURN - 1 + 2*MAX_TURNS
    integer, parameter :: S_CHI = NSTATV_WITHOUT_PRELOADING + 1, S_CHI_OWN = S_CHI + 1, S_CHI_STACK = S_CHI_OWN + 1

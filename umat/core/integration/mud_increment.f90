@@ -13,22 +13,21 @@ module mud_increment
    use mud_elastic_domain, only: loading_direction, exit_share
    use mud_substep, only: scheme_t, SCHEMES
    use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_OPTIONS
+   use mud_way, only: way_t, void_ratio_on, suction_on, SHORTEST_PHASE
    implicit none (type, external)
    private
    public :: increment_t, new_increment, take_phase, end_in_domain, volume_from_centre, direction_at, void_ratio_at, &
-             suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, &
-             SHORTEST_PHASE, STRAIGHT
+             suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, STRAIGHT
 
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
    real(wp), parameter :: ACROSS = 1.0e-12_wp
-   real(wp), parameter :: SHORTEST_PHASE = 1.0e-9_wp   !< A shorter phase is left out [-].
    !> A strain this close to nu does not turn it: what that moves is rounding [-].
    real(wp), parameter :: STRAIGHT = 1.0e-10_wp
 
-   !> An increment, and the phase of it that is being integrated. Pseudo-time runs from 0 to 1 over the whole of it.
-   type :: increment_t
-      real(wp) :: d_strain(6), d_pc, p_c0, e0, d_v
+   !> An increment, and the phase of it that is being integrated.
+   type, extends(way_t) :: increment_t
+      real(wp) :: d_strain(6)
       real(wp) :: length            !< Norm of the strain [-].
       real(wp) :: rho               !< Radius of the elastic domain, 0: none [-].
       real(wp) :: exit              !< Where the strain leaves the elastic domain, 1: it does not [-].
@@ -231,14 +230,12 @@ contains
       nu = loading_direction(inc%rho, inc%from_centre, inc%d_strain, time - inc%exit)
    end function direction_at
 
-   !> Void ratio at a pseudo-time: 1 + e falls as exp(-eps_v), exactly. time is a share of inc, the result [-].
-   !> docs/theory/material.md section 1.2.
+   !> Void ratio at a pseudo-time. time is a share of inc, the result [-].
    pure real(wp) function void_ratio_at(inc, time) result(e)
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time
 
-      e = inc%e0
-      if (abs(inc%d_v) > 0.0_wp) e = (1.0_wp + e)*exp(-inc%d_v*time) - 1.0_wp
+      e = void_ratio_on(inc%way_t, time)
    end function void_ratio_at
 
    !> Suction at a pseudo-time [kPa]. time is a share of inc [-].
@@ -246,6 +243,6 @@ contains
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time
 
-      p_c = inc%p_c0 + time*inc%d_pc
+      p_c = suction_on(inc%way_t, time)
    end function suction_at
 end module mud_increment

@@ -2,10 +2,11 @@
 !> An increment as a list of phases. Where suction turns, passes zero or a kink of S_w, and where the strain leaves the
 !> elastic domain, follows from strain, void ratio and suction alone: the list is made beforehand.
 module mud_phases
-   use mud_branches, only: course_t, list_kinks, MAX_KINKS
-   use mud_increment, only: increment_t, suction_at, SHORTEST_PHASE
+   use mud_increment, only: increment_t, suction_at
    use mud_kinds, only: wp
    use mud_params, only: params_t
+   use mud_retention, only: course_t, list_kinks, MAX_KINKS
+   use mud_way, only: SHORTEST_PHASE
    implicit none (type, external)
    private
    public :: cut_t, list_cuts, MAX_CUTS, CUT_TURN, CUT_NO_SUCTION, CUT_EXIT, CUT_KINK
@@ -21,24 +22,23 @@ module mud_phases
    end type cut_t
 contains
    !> The cuts of an increment in their order, its end the last. A phase that would be very short is joined to the next.
-   !> Cuts at one place move with the one at which rates change most: it is inserted first. course is read with
-   !> hysteresis. docs/theory/integration.md section 1.
+   !> Cuts at one place move with the one at which rates change most: it is inserted first.
+   !> docs/theory/integration.md section 1.
    pure subroutine list_cuts(par, inc, course, cuts, n)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(course_t), intent(in) :: course
       type(cut_t), intent(out) :: cuts(MAX_CUTS)   !< Entries beyond n have no meaning.
       integer, intent(out) :: n
-      real(wp) :: times(MAX_KINKS)
+      real(wp) :: times(MAX_KINKS), turn
       integer :: i, k
 
       n = 1
       cuts(1) = cut_t(CUT_END, 1.0_wp, turns=.false.)
       if (inc%rho > 0.0_wp) call insert(cut_t(CUT_EXIT, inc%exit, turns=.false.), cuts, n)
       if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc, turns=.false.), cuts, n)
-      if (.not. par%hysteresis) return
-      if (course%turn < 1.0_wp) call insert(cut_t(CUT_TURN, course%turn, turns=.true.), cuts, n)
-      call list_kinks(inc, course, times, k)
+      call list_kinks(inc%way_t, course, turn, times, k)
+      if (turn < 1.0_wp) call insert(cut_t(CUT_TURN, turn, turns=.true.), cuts, n)
       do i = 1, k
          call insert(cut_t(CUT_KINK, times(i), turns=.false.), cuts, n)
       end do

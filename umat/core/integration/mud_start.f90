@@ -9,9 +9,8 @@ module mud_start
    use mud_options, only: new_numbers
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
-   use mud_retention, only: saturation_t, saturation, log_suction
+   use mud_retention, only: saturation_t, saturation, begin_saturation, note_saturation
    use mud_reversal, only: new_memory
-   use mud_scanning, only: path_t, begin_path, branch_of, preset_saturation
    use mud_state, only: state_t, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_VOID_RATIO, ON_VOID_RATIO
    use mud_tensor, only: trace, is_finite
@@ -29,9 +28,8 @@ contains
       real(wp), intent(in) :: sigma(6), e, p_c   !< [kPa, -, kPa], compression positive
       type(state_t), intent(out) :: state
       type(mud_status_t), intent(out) :: status
-      real(wp), intent(in), optional :: preset   !< S_w, with hysteresis; none or 0: on the main drying curve [-].
+      real(wp), intent(in), optional :: preset   !< S_w, see begin_saturation [-].
       type(suction_law_t) :: law
-      type(path_t) :: path
       type(saturation_t) :: sat
       real(wp) :: p, r(6)
 
@@ -55,24 +53,18 @@ contains
       state%last_step = 0.0_wp
       state%open = .false.
       law = par%suction
-      if (par%hysteresis) then
-         state%s_w = 0.0_wp
-         if (present(preset)) state%s_w = preset
-         call preset_saturation(par%suction%retention_t, p_c, e, state%s_w, status)
-         if (status%code /= MUD_OK) return
-         path = begin_path(par%suction%retention_t, log_suction(par%suction%retention_t, p_c, e), state%s_w)
-         state%turns = path%turns
-         law%retention_t = branch_of(par%suction%retention_t, path)
-      end if
+      state%s_w = 0.0_wp
+      if (present(preset)) state%s_w = preset
+      call begin_saturation(par%suction%retention_t, p_c, e, state%s_w, state%turns, law%retention_t, status)
+      if (status%code /= MUD_OK) return
       state%sigma = lifted(par, law, sigma, e, p_c)
       call finish_state(par, law, state, sat)
       call stress_ratio(par, state%sigma, p, r)
       state%memory = new_memory(r)
    end subroutine initial_state
 
-   !> Saturation and state parameter of a state, and the saturation with its slopes; with hysteresis they are those of
-   !> the branch, and S_w is the state's. S_w and psi [-].
-   !> docs/theory/material.md sections 2.1, 3.2.
+   !> Saturation and state parameter of a state, and the saturation with its slopes, on the branch that it is on.
+   !> S_w and psi [-]; docs/theory/material.md sections 2.1, 3.2.
    pure subroutine finish_state(par, law, state, sat)
       type(params_t), intent(in) :: par
       type(suction_law_t), intent(in) :: law   !< with the branch of the state
@@ -87,7 +79,7 @@ contains
       else
          sat = saturation(law%retention_t, state%p_c, state%e)
       end if
-      if (.not. par%hysteresis) state%s_w = sat%s_w
+      call note_saturation(law%retention_t, sat, state%s_w)
       if (state%gap > 0.0_wp .and. is_bonded(law, state%p_c)) bond = bonding(law, state%p_c, soil_void_ratio(state))
       state%psi = state_parameter(par, bond%f, soil_void_ratio(state), max(trace(state%sigma)/3.0_wp, par%p_min))
    end subroutine finish_state

@@ -163,7 +163,7 @@ contains
          if (.not. noise .and. it%event /= EVENT_REVERSAL) call turns_by_resting( &
             par, it%inc, it%trial, it%trial%time, it%trial%y0, it%state%margin, it%counters, noise)
          if (noise) then
-            it%counters%hysteresis = it%counters%hysteresis + 1
+            it%counters%held_back = it%counters%held_back + 1
             return
          end if
       end if

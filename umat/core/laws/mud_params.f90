@@ -3,7 +3,7 @@
 module mud_params
    use mud_bonding, only: suction_law_t
    use mud_kinds, only: wp, SQRT_6
-   use mud_registry, only: NPROPS, NPROPS_WITHOUT_HYSTERESIS, NPROPS_WITHOUT_PRELOADING, &
+   use mud_registry, only: NPROPS, NPROPS_BASE, NPROPS_WITHOUT_PRELOADING, &
       NPROPS_WITHOUT_FLUIDITY, PROPERTIES, KIND_REAL, &
       P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, &
       P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
@@ -84,7 +84,7 @@ contains
    pure logical function is_length(n)
       integer, intent(in) :: n
 
-      is_length = any(n == [NPROPS, NPROPS_WITHOUT_FLUIDITY, NPROPS_WITHOUT_PRELOADING, NPROPS_WITHOUT_HYSTERESIS])
+      is_length = any(n == [NPROPS, NPROPS_WITHOUT_FLUIDITY, NPROPS_WITHOUT_PRELOADING, NPROPS_BASE])
    end function is_length
 
    !> Options that PROPS, of any length and not yet checked, switch on.
@@ -123,7 +123,7 @@ contains
       else if (is_length(size(props))) then
          call read_all(completed(props), params, status)
       else
-         status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(size(props), wp), real(NPROPS_WITHOUT_HYSTERESIS, wp), &
+         status = fail(MUD_BAD_NPROPS, ON_PROPS, 0, real(size(props), wp), real(NPROPS_BASE, wp), &
                        real(NPROPS, wp))
       end if
    end subroutine read_params
@@ -183,6 +183,7 @@ contains
       params%rho_e = props(P_RHO_E)
       params%shear_order = whole(props(P_SHEAR_ORDER))
       params%hysteresis = whole(props(P_HYSTERESIS)) == 1
+      params%suction%hysteresis = params%hysteresis
       params%suction%scanning%acts = .false.
       params%suction%scanning%moves = .false.
       if (params%hysteresis) call read_wetting(props, params%suction%retention_t)
@@ -283,7 +284,7 @@ contains
    end subroutine check_bounds
 
    !> Checks that the main wetting curve is below the main drying curve at small and at large suctions. In between it
-   !> takes more than a comparison: see check_curves of mud_scanning.
+   !> takes more than a comparison: see check_retention of mud_retention.
    pure subroutine check_wetting(props, status)
       real(wp), intent(in) :: props(NPROPS)
       type(mud_status_t), intent(inout) :: status

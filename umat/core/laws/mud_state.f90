@@ -3,19 +3,20 @@
 module mud_state
    use mud_kinds, only: wp
    use mud_params, only: options_t
-   use mud_registry, only: NSTATV, NSTATV_WITHOUT_HYSTERESIS, NSTATV_WITHOUT_PRELOADING, NSTATV_WITHOUT_FLUIDITY, &
+   use mud_registry, only: NSTATV, NSTATV_BASE, NSTATV_WITHOUT_PRELOADING, NSTATV_WITHOUT_FLUIDITY, &
       STATE_LAYOUT, S_LAYOUT, &
       S_VOID_RATIO, S_SATURATION, S_SUCTION, S_STATE_PARAMETER, S_EPS_Q_P, S_EPS_Q_P_TOTAL, S_X_BEFORE, S_X_RUNNING, &
       S_TARGET, S_INTERRUPTED, S_OPEN, S_LAST_STEP, S_FABRIC, S_MEMORY, S_MEMORY_BEFORE, S_DIRECTION, S_N_RATE, &
       S_N_SUBSTEP, S_N_REJECT, S_N_RESET, S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE, &
       S_ELASTIC_DOMAIN, S_GAP, S_STACK, ENTRY_SIZE, MAX_INTERRUPTED, S_TURNS, S_N_CLEARED, S_TURN, MAX_TURNS, S_CHI, &
       S_CHI_OWN, S_CHI_STACK, S_MARGIN, S_FLUIDITY
+   use mud_retention, only: turns_t, NO_TURNS
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
    use mud_tensor, only: is_finite, all_finite, all_zero
    implicit none (type, external)
    private
-   public :: memory_t, interrupted_t, turns_t, state_t, counters_t, guard_count, pack_state, unpack_state, &
-             statev_size, E_LOWER, E_UPPER, E_OPEN, NO_TURNS
+   public :: memory_t, interrupted_t, state_t, counters_t, guard_count, pack_state, unpack_state, &
+             unpack_turns, statev_size, E_LOWER, E_UPPER, E_OPEN
 
    real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio without a gap [-].
    real(wp), parameter :: E_OPEN = 1.0e4_wp   !< Largest void ratio with a gap [-].
@@ -56,15 +57,6 @@ module mud_state
       type(interrupted_t) :: interrupted(MAX_INTERRUPTED)   !< The oldest first; beyond depth without meaning.
    end type memory_t
 
-   !> Turns of the modified suction x = p_c e^Omega (hysteresis), and its present direction.
-   type :: turns_t
-      logical :: dries             !< The present direction.
-      integer :: depth             !< Number of turning points.
-      real(wp) :: log_x(MAX_TURNS) !< ln(x/P_a) of each, the oldest first; beyond depth without meaning [-].
-      real(wp) :: s_w(MAX_TURNS)   !< S_w of each, likewise [-].
-   end type turns_t
-   type(turns_t), parameter :: NO_TURNS = turns_t(.true., 0, 0.0_wp, 0.0_wp)
-
    type :: state_t
       real(wp) :: sigma(6)     !< sigma' [kPa], compression positive
       real(wp) :: z(6)         !< fabric [-]
@@ -80,12 +72,12 @@ module mud_state
       real(wp) :: from_centre(6)   !< strain from the centre of the elastic domain [-]
       logical :: open          !< held by the tension cut-off
       type(memory_t) :: memory
-      type(turns_t) :: turns   !< With hysteresis; otherwise without meaning.
+      type(turns_t) :: turns
    end type state_t
 
    !> Counters of what an update did.
    type :: counters_t
-      integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, hysteresis = 0, &
+      integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, held_back = 0, &
                  iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, cleared = 0
    end type counters_t
 contains
@@ -93,7 +85,7 @@ contains
    pure integer function statev_size(options) result(n)
       type(options_t), intent(in) :: options
 
-      n = merge(NSTATV_WITHOUT_PRELOADING, NSTATV_WITHOUT_HYSTERESIS, options%hysteresis)
+      n = merge(NSTATV_WITHOUT_PRELOADING, NSTATV_BASE, options%hysteresis)
       if (options%preloading) n = NSTATV_WITHOUT_FLUIDITY
       if (options%fluid) n = NSTATV
    end function statev_size
@@ -118,10 +110,10 @@ contains
       used = S_STACK - 1 + ENTRY_SIZE*stored_processes(statev)
       finite = all_finite(statev(1:used))
       ! beyond the interrupted processes there are zeros
-      if (finite .and. .not. all_zero(statev(used + 1:NSTATV_WITHOUT_HYSTERESIS))) &
-         finite = all_finite(statev(used + 1:NSTATV_WITHOUT_HYSTERESIS))
+      if (finite .and. .not. all_zero(statev(used + 1:NSTATV_BASE))) &
+         finite = all_finite(statev(used + 1:NSTATV_BASE))
       if (.not. finite) then
-         i = findloc(is_finite(statev(1:NSTATV_WITHOUT_HYSTERESIS)), .false., dim=1)
+         i = findloc(is_finite(statev(1:NSTATV_BASE)), .false., dim=1)
          status = fail(MUD_BAD_STATE, ON_STATEV, i, statev(i), -huge(1.0_wp), huge(1.0_wp))
          return
       end if
@@ -147,7 +139,7 @@ contains
       call require_tensor(statev, S_ELASTIC_DOMAIN, LARGEST_FROM_CENTRE, status)
       if (status%code /= 0) return
       call unpack_stack(statev, state%memory, status)
-      if (options%hysteresis) call unpack_turns(statev, state%turns, status)
+      call unpack_turns(statev, options, state%turns, status)
       call unpack_contraction(statev, options%preloading, state%memory, status)
       state%fluidity = 0.0_wp
       if (options%fluid) call require(statev, S_FLUIDITY, 0.0_wp, LARGEST_FLUIDITY, status)
@@ -225,14 +217,16 @@ contains
       statev(S_CHI_STACK:S_CHI_STACK - 1 + memory%depth) = memory%interrupted(:memory%depth)%chi
    end subroutine pack_contraction
 
-   !> Reads the turning points of suction; places beyond their number are not looked at. No number, of a state that had
-   !> no hysteresis: none.
-   pure subroutine unpack_turns(statev, turns, status)
+   !> Reads the turning points of suction, with hysteresis; places beyond their number are not looked at. No number, of
+   !> a state that had no hysteresis: none.
+   pure subroutine unpack_turns(statev, options, turns, status)
       real(wp), intent(in) :: statev(:)
+      type(options_t), intent(in) :: options
       type(turns_t), intent(inout) :: turns
       type(mud_status_t), intent(inout) :: status
       integer :: k, i
 
+      if (.not. options%hysteresis) return
       i = findloc(is_finite(statev(S_TURNS:NSTATV_WITHOUT_PRELOADING)), .false., dim=1)
       if (i > 0 .and. status%code == 0) &
          status = fail(MUD_BAD_STATE, ON_STATEV, S_TURNS - 1 + i, statev(S_TURNS - 1 + i), -huge(1.0_wp), huge(1.0_wp))
@@ -385,6 +379,6 @@ contains
    pure integer function guard_count(counters)
       type(counters_t), intent(in) :: counters
 
-      guard_count = counters%floor + counters%cap_d + counters%cap_h + counters%hysteresis + counters%iso_kept
+      guard_count = counters%floor + counters%cap_d + counters%cap_h + counters%held_back + counters%iso_kept
    end function guard_count
 end module mud_state

@@ -7,6 +7,7 @@ module mud_bounding_changes
    use mud_critical_state, only: state_parameter, state_parameter_slopes, bounding_ratio, bounding_slope, lode_gradient
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
+   use mud_retention, only: moves_with_turn
    use mud_tensor, only: ddot, norm
    implicit none (type, external)
    private
@@ -25,7 +26,7 @@ contains
 
       bond = bonding(law, p_c, e)
       df = bond%df_de*de + bond%df_dpc*dp_c
-      if (law%bonds .and. law%scanning%moves .and. present(d_turn)) then
+      if (law%bonds .and. moves_with_turn(law%retention_t) .and. present(d_turn)) then
          with_turn = bonding_with_turn(law, bond, p_c, e)
          df = df + with_turn(1)*d_turn
       end if

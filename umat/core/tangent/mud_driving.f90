@@ -2,9 +2,9 @@
 !> Derivatives of what drives an increment - strain, volume, suction - along the directions of the consistent tangent,
 !> and of the pseudo-times at which its phases end.
 module mud_driving
-   use mud_branches, only: slopes_of_suction
    use mud_kinds, only: wp
    use mud_increment, only: increment_t, void_ratio_at, suction_at
+   use mud_retention, only: slopes_of_suction
    use mud_tensor, only: DIRECTIONS => LANES, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions
    use mud_turning, only: changes_of_exit
    implicit none (type, external)
@@ -101,7 +101,7 @@ contains
       type(driving_t), intent(in) :: driving
       real(wp) :: change(DIRECTIONS), slopes(2)
 
-      slopes = slopes_of_suction(inc, time, omega)
+      slopes = slopes_of_suction(inc%way_t, time, omega)
       change = -time*(slopes(1)*driving%d_pc + slopes(2)*driving%d_v)/(slopes(1)*inc%d_pc + slopes(2)*inc%d_v)
    end function change_of_passing
 end module mud_driving

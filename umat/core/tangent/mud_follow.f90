@@ -14,6 +14,7 @@ module mud_follow
    use mud_options, only: keep_past_changes
    use mud_params, only: params_t
    use mud_phases, only: cut_t, CUT_TURN, CUT_NO_SUCTION, CUT_EXIT, CUT_KINK
+   use mud_retention, only: moves_with_turn
    use mud_tensor, only: tensors_t, ANY_TENSORS
    implicit none (type, external)
    private
@@ -26,7 +27,7 @@ contains
       type(cut_t), intent(in) :: cut
       type(sensitivity_t), intent(inout) :: sens
 
-      sens%driving%scans = inc%suction%scanning%moves
+      sens%driving%scans = moves_with_turn(inc%suction%retention_t)
       call begin_stretch(inc, change_of_cut(par, inc, cut, sens), sens)
    end subroutine follow_phase
 

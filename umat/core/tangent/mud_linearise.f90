@@ -14,6 +14,7 @@ module mud_linearise
       BY_R_B
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
+   use mud_retention, only: moves_with_turn
    use mud_tensor, only: LANES, contractions, trace
    use mud_turn, only: turn_t, find_turn
    use mud_vector, only: NY
@@ -87,7 +88,7 @@ contains
       lin%with_turn = 0.0_wp
       if (law%bonds) then
          lin%curvature = bonding_curvature(law, w%bond, p_c, e)
-         if (law%scanning%moves) lin%with_turn = bonding_with_turn(law, w%bond, p_c, e)
+         if (moves_with_turn(law%retention_t)) lin%with_turn = bonding_with_turn(law, w%bond, p_c, e)
       end if
       call state_parameter_slopes(par, w%psi, w%bond%f, e, w%p, lin%psi_f, lin%psi_p)
       lin%m_b_psi = bounding_slope(par, w%psi, w%m_b)
