@@ -5,7 +5,7 @@
 !> docs/theory/material.md section 4.6. The angle, phi there, is w here. The equation is that of
 !> mud_direction_equation; here its roots are looked for.
 module mud_direction
-   use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
+   use mud_arc, only: arc_t, arc_through, trace_cube, trace_cube_slope
    use mud_branchless, only: smaller
    use mud_critical_state, only: lode_factor, lode_slope
    use mud_direction_equation, only: equation_t, equation_of, find_moduli, slopes_t, slopes_at
@@ -55,15 +55,8 @@ contains
       logical :: guarded, found
 
       n_t = w%t/w%t_norm
-      call arc_through(w%r, w%r_moved, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
-      if (par%fabric) call add_fabric(w%z, n_t, q, arc)
-      if (par%lode) call add_cube(n_t, q, arc)
-      w%z_n = 0.0_wp
-      w%a_d = w%a_0
-      w%lode = 1.0_wp
+      call arc_through(w%r, w%r_moved, w%z, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
       eq = equation_of(par, w)
-      w%r_b = eq%r_b_1
-      w%r_d = eq%r_d_1
       if (arc%r_q <= 0.0_wp) then
          w%n = n_t
          call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
@@ -108,7 +101,7 @@ contains
 
       ! Where r along t is below the dilatancy surface of every Lode angle D is not negative there, and beta positive.
       known = guarded .and. start > 0.0_wp .and. start < 1.0_wp .and. &
-              arc%r_t <= merge(min(par%c, 1.0_wp), 1.0_wp, par%lode)*eq%r_d_1
+              arc%r_t <= min(par%c, 1.0_wp)*eq%r_d_1
       side = 1.0_wp
       if (.not. known) then
          call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
@@ -272,10 +265,6 @@ contains
       type(moduli_t) :: m
       type(angle_t) :: at
 
-      m%lode = 1.0_wp
-      m%a_d = eq%a_0
-      m%r_b = eq%r_b_1
-      m%r_d = eq%r_d_1
       call evaluate_direction(par, eq, arc, 0.0_wp, m, at)
       residual = side*at%residual
    end function residual_at_t
@@ -298,18 +287,10 @@ contains
          c(i) = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
          s(i) = tau*(1.0_wp + c(i))
       end do
-      lode = 1.0_wp
-      if (par%lode) then
-         do i = 1, POINTS
-            lode(i) = lode_factor(par, trace_cube(arc, c(i), s(i)))
-         end do
-      end if
-      a_d = eq%a_0
-      if (par%fabric) then
-         do i = 1, POINTS
-            a_d(i) = dilatancy_factor(par, eq%a_0, c(i)*arc%z_t + s(i)*arc%z_q)
-         end do
-      end if
+      do i = 1, POINTS
+         lode(i) = lode_factor(par, trace_cube(arc, c(i), s(i)))
+         a_d(i) = dilatancy_factor(par, eq%a_0, c(i)*arc%z_t + s(i)*arc%z_q)
+      end do
       do i = 1, POINTS
          m%r_n = c(i)*arc%r_t + s(i)*arc%r_q
          m%x = c(i)*arc%x_t + s(i)*arc%x_q
@@ -322,7 +303,7 @@ contains
       end do
    end subroutine residuals
 
-   !> The direction equation at the angle whose half has the tangent tau. What belongs to a switch that is off stays.
+   !> The direction equation at the angle whose half has the tangent tau.
    pure subroutine evaluate_direction(par, eq, arc, tau, m, at)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
@@ -335,15 +316,11 @@ contains
       at%sine = tau*(1.0_wp + at%cosine)
       m%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
       m%x = at%cosine*arc%x_t + at%sine*arc%x_q
-      if (par%fabric) then
-         m%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
-         m%a_d = dilatancy_factor(par, eq%a_0, m%z_n)
-      end if
-      if (par%lode) then
-         m%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
-         m%r_b = eq%r_b_1*m%lode
-         m%r_d = eq%r_d_1*m%lode
-      end if
+      m%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
+      m%a_d = dilatancy_factor(par, eq%a_0, m%z_n)
+      m%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
+      m%r_b = eq%r_b_1*m%lode
+      m%r_d = eq%r_d_1*m%lode
       call find_moduli(eq, m)
       at%residual = m%gamma*at%sine - m%beta*arc%r_q
       at%scale = m%gamma + abs(m%beta)*arc%r_q
@@ -362,10 +339,8 @@ contains
       call slopes_at(par, w, w%moduli_t, s)
       dr = at%cosine*arc%r_q - at%sine*arc%r_t
       dx = at%cosine*arc%x_q - at%sine*arc%x_t
-      dz = 0.0_wp
-      if (par%fabric) dz = at%cosine*arc%z_q - at%sine*arc%z_t
-      d_lode = 0.0_wp
-      if (par%lode) d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
+      dz = at%cosine*arc%z_q - at%sine*arc%z_t
+      d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
       dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
       if (w%own%bends) dd = dd + s%d_x*dx
       dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode
