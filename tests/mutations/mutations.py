@@ -50,8 +50,8 @@ MUTATIONS = [
     # critical state and flow
     ("sign of the dilatancy", (FLOW, "d = a_d*(r_d - r_n)", "d = -a_d*(r_d - r_n)")),
     ("dilatancy without the Lode factor", (DIRECTION, "m%r_d = eq%r_d_1*m%lode", "m%r_d = eq%r_d_1")),
-    ("fabric also grows in contraction", (FLOW, ".and. d < 0.0_wp) dz", ") dz")),
-    ("fabric acts in every direction", (FLOW, "1.0_wp + positive(z_n)", "1.0_wp + z_n + 0.0_wp*positive(z_n)")),
+    ("fabric also grows in contraction", (FLOW, "smaller(d, 0.0_wp)", "smaller(d, 1.0e3_wp)")),
+    ("fabric acts in every direction", (FLOW, "par%fabric*positive(z_n)", "par%fabric*z_n + 0.0_wp*positive(z_n)")),
     ("drop the Lode slope", (CRITICAL, "slope = par%lode_bend*g**5", "slope = 0.0_wp*par%lode_bend*g**5")),
     ("Lode factor with c squared", (PARAMS, "params%c4 = params%c**4", "params%c4 = params%c**2")),
     ("no Macaulay brackets in the bounding ratio",

@@ -84,8 +84,6 @@ contains
       real(wp), intent(in) :: trace_cube
       real(wp) :: cos_3t
 
-      g = 1.0_wp
-      if (.not. par%lode) return
       cos_3t = smaller(larger(SQRT_6*trace_cube, -1.0_wp), 1.0_wp)
       g = sqrt(sqrt(2.0_wp*par%c4/(1.0_wp + par%c4 - (1.0_wp - par%c4)*cos_3t)))
    end function lode_factor
@@ -96,8 +94,7 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: g
 
-      slope = 0.0_wp
-      if (par%lode) slope = par%lode_bend*g**5
+      slope = par%lode_bend*g**5
    end function lode_slope
 
    !> g and dg/dr in the direction of a stress ratio r, r_norm = |r| [-]. The gradient is a deviator without a part
@@ -110,7 +107,7 @@ contains
 
       g = 1.0_wp
       g_r = 0.0_wp
-      if (.not. (par%lode .and. r_norm > NOTHING)) return
+      if (r_norm <= NOTHING) return
       r2 = square(r)
       cube = ddot(r2, r)/r_norm**3
       g = lode_factor(par, cube)
@@ -124,9 +121,8 @@ contains
       real(wp), intent(in) :: r(6), r_norm, m_b
       real(wp) :: g
 
-      g = 1.0_wp
-      if (par%lode .and. r_norm > NOTHING) g = lode_factor(par, ddot(square(r), r)/r_norm**3)
-      bounding_norm = SQRT_2_3*g*m_b
+      g = lode_factor(par, ddot(square(r), r)/max(r_norm, NOTHING)**3)
+      bounding_norm = SQRT_2_3*merge(g, 1.0_wp, r_norm > NOTHING)*m_b
    end function bounding_norm
 
    !> Image alpha_hat [kPa] of a void ratio on the compression line, paper eq. (7) with f corrected. Void ratio

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Plastic flow: dilatancy and fabric; docs/theory/material.md sections 4.2 and 4.3.
 module mud_flow
-   use mud_branchless, only: positive
+   use mud_branchless, only: positive, smaller
    use mud_kinds, only: wp
    use mud_params, only: params_t
    implicit none (type, external)
@@ -14,8 +14,7 @@ contains
       real(wp), intent(in) :: a_0   !< A_0 of the rate [-]
       real(wp), intent(in) :: z_n   !< z:n [-]
 
-      a_d = a_0
-      if (par%fabric) a_d = a_d*(1.0_wp + positive(z_n))
+      a_d = a_0*(1.0_wp + par%fabric*positive(z_n))
    end function dilatancy_factor
 
    !> D [-] of d eps^p = L (n + D/3 I): in triaxial compression exactly paper eq. (9). docs/theory/material.md section
@@ -36,7 +35,6 @@ contains
       real(wp), intent(in) :: n(6), z(6)
       real(wp) :: dz(6)
 
-      dz = 0.0_wp
-      if (par%fabric .and. d < 0.0_wp) dz = par%c_z*loading*d*(par%z_max*n + z)
+      dz = (par%fabric*par%c_z*loading*smaller(d, 0.0_wp))*(par%z_max*n + z)
    end function fabric_rate
 end module mud_flow

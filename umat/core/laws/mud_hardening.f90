@@ -141,17 +141,16 @@ contains
       real(wp), intent(out) :: power, slope
       real(wp) :: u2, first, third, fifth
 
+      slope = max(abs(delta), SMALLEST_DELTA)**(theta - 1.0_wp)
+      power = slope*delta
       if (abs(delta) >= SMALLEST_DELTA) then
-         slope = abs(delta)**(theta - 1.0_wp)
-         power = slope*delta
          slope = theta*slope
       else
          u2 = (delta/SMALLEST_DELTA)**2
          fifth = (theta - 1.0_wp)*(theta - 3.0_wp)/8.0_wp
          third = (theta - 1.0_wp)*(5.0_wp - theta)/4.0_wp
          first = 1.0_wp - third - fifth
-         slope = SMALLEST_DELTA**(theta - 1.0_wp)
-         power = slope*delta*(first + u2*(third + u2*fifth))
+         power = power*(first + u2*(third + u2*fifth))
          slope = slope*(first + u2*(3.0_wp*third + u2*5.0_wp*fifth))
       end if
    end subroutine signed_power

@@ -44,10 +44,12 @@ module mud_params
 
    !> Parameters of one material; names and units as in mud_registry.
    type, extends(options_t) :: params_t
-      real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
+      real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
       type(suction_law_t) :: suction   !< Retention and bonding.
       real(wp) :: e_0, p_atm, p_min
-      logical :: fabric, isotropic, lode, cutoff
+      logical :: isotropic, cutoff
+      real(wp) :: fabric    !< 1, or 0: fabric does not count [-].
+      real(wp) :: c         !< 1 without Lode dependence too: a circle [-].
       logical :: remembers  !< The isotropic mechanism has a memory.
       integer :: memory_rule
       real(wp) :: eps_hat, j_exp
@@ -167,10 +169,10 @@ contains
       params%largest_stress = LARGEST_STRESS*stress_unit(props)
       params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
       params%suction%bonds = whole(props(P_BONDING)) == 1
-      params%fabric = whole(props(P_FABRIC)) == 1
+      params%fabric = real(whole(props(P_FABRIC)), wp)
       params%isotropic = whole(props(P_ISOTROPIC)) /= ISOTROPIC_NONE
       params%remembers = whole(props(P_ISOTROPIC)) == ISOTROPIC_REMEMBERS
-      params%lode = whole(props(P_LODE)) == 1
+      if (whole(props(P_LODE)) == 0) params%c = 1.0_wp
       params%memory_rule = whole(props(P_MEMORY_RULE))
       params%eps_hat = props(P_EPS_HAT)
       params%j_exp = props(P_J_EXP)

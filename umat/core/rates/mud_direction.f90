@@ -5,7 +5,7 @@
 !> docs/theory/material.md section 4.6. The angle, phi there, is w here. The equation is that of
 !> mud_direction_equation; here its roots are looked for.
 module mud_direction
-   use mud_arc, only: arc_t, arc_through, add_fabric, add_cube, trace_cube, trace_cube_slope
+   use mud_arc, only: arc_t, arc_through, trace_cube, trace_cube_slope
    use mud_branchless, only: smaller
    use mud_critical_state, only: lode_factor, lode_slope
    use mud_direction_equation, only: equation_t, equation_of, find_moduli, slopes_t, slopes_at
@@ -27,6 +27,14 @@ module mud_direction
    !> Share of the floor below which the change of x up to the root makes the residual straight: r is nearly along t. In
    !> triaxial tests of a host r leaves t by rounding alone, and so would decide what follows [-].
    real(wp), parameter :: NEARLY_ALONG = 1.0e-6_wp
+   integer, parameter :: ALONE = 1, SEVERAL = 0, UNKNOWN = -1   !< Roots on an arc: one, perhaps more; it is to be seen.
+
+   !> An interval of the arc with a root, and where Newton's method is in it; tau without its sign.
+   type :: bracket_t
+      real(wp) :: lower, upper
+      real(wp) :: u               !< angle that is tried
+      real(wp) :: previous        !< length of the last step
+   end type bracket_t
 
    !> The direction equation at one angle.
    type :: angle_t
@@ -55,25 +63,15 @@ contains
       logical :: guarded, found
 
       n_t = w%t/w%t_norm
-      call arc_through(w%r, w%r_moved, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
-      if (par%fabric) call add_fabric(w%z, n_t, q, arc)
-      if (par%lode) call add_cube(n_t, q, arc)
-      w%z_n = 0.0_wp
-      w%a_d = w%a_0
-      w%lode = 1.0_wp
+      call arc_through(w%r, w%r_moved, w%z, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
       eq = equation_of(par, w)
-      w%r_b = eq%r_b_1
-      w%r_d = eq%r_d_1
       if (arc%r_q <= 0.0_wp) then
          w%n = n_t
          call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
          found = at%admissible > 0.0_wp
       else
          start = -1.0_wp
-         if (known) then
-            ! a direction against t has no half angle
-            if (ddot(w%n, n_t) > -0.9_wp) start = ddot(w%n, q)/(1.0_wp + ddot(w%n, n_t))
-         end if
+         if (known) start = half_tangent(w%n, n_t, q)
          guarded = par%floored .and. par%cap_d > 0.0_wp .and. par%cap_h > 0.0_wp
          call find_side(par, eq, arc, guarded, start, w, side, at)
          w%several = .not. guarded
@@ -108,18 +106,33 @@ contains
 
       ! Where r along t is below the dilatancy surface of every Lode angle D is not negative there, and beta positive.
       known = guarded .and. start > 0.0_wp .and. start < 1.0_wp .and. &
-              arc%r_t <= merge(min(par%c, 1.0_wp), 1.0_wp, par%lode)*eq%r_d_1
+              arc%r_t <= min(par%c, 1.0_wp)*eq%r_d_1
       side = 1.0_wp
       if (.not. known) then
          call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
          side = sign(1.0_wp, w%beta)
       end if
       start = side*start
-      if (guarded .and. (start <= 0.0_wp .or. start >= 1.0_wp)) then
-         start = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)   ! sine of the angle if gamma and beta did not change
-         start = start/(1.0_wp + sqrt(1.0_wp - start*start))
-      end if
+      if (guarded .and. (start <= 0.0_wp .or. start >= 1.0_wp)) start = first_guess(arc, w)
    end subroutine find_side
+
+   !> tau of a direction n on the arc from n_t to q; -1 of one against n_t, which has no half angle.
+   pure real(wp) function half_tangent(n, n_t, q) result(tau)
+      real(wp), intent(in) :: n(6), n_t(6), q(6)
+
+      tau = -1.0_wp
+      if (ddot(n, n_t) > -0.9_wp) tau = ddot(n, q)/(1.0_wp + ddot(n, n_t))
+   end function half_tangent
+
+   !> |tau| of the root if gamma and beta were what they are at w = 0.
+   pure real(wp) function first_guess(arc, w) result(tau)
+      type(arc_t), intent(in) :: arc
+      type(rate_t), intent(in) :: w
+      real(wp) :: sine
+
+      sine = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)
+      tau = sine/(1.0_wp + sqrt(1.0_wp - sine*sine))
+   end function first_guess
 
    !> Looks for a first change of sign up to |tau|, a root already found or the end of the arc, and for the root there.
    pure subroutine scan_for_root(par, eq, arc, side, w, tau, at, found)
@@ -150,35 +163,64 @@ contains
       type(rate_t), intent(inout) :: w
       real(wp), intent(out) :: tau
       type(angle_t), intent(out) :: at
-      real(wp) :: lower, upper, u, slope, step, previous
+      type(bracket_t) :: bracket
       integer :: iteration
 
-      lower = from
-      upper = to
-      u = first
-      previous = to - from
+      bracket = bracket_t(from, to, first, to - from)
       do iteration = 1, MAX_ITERATIONS
-         tau = side*u
+         tau = side*bracket%u
          call evaluate_direction(par, eq, arc, tau, w%moduli_t, at)
-         if (abs(at%residual) <= ROOT_TOLERANCE*at%scale) return
-         if (side*at%residual < 0.0_wp) then
-            lower = u
-         else
-            upper = u
-         end if
-         if (upper - lower <= 2.0_wp*epsilon(u)*upper) return
-         slope = slope_of_residual(par, arc, w, at)*2.0_wp/(1.0_wp + u*u)
-         step = 2.0_wp*previous
-         if (slope > 0.0_wp) step = -side*at%residual/slope
-         if (abs(step) > 0.5_wp*previous .or. u + step <= lower .or. u + step >= upper) then
-            step = 0.5_wp*(lower + upper) - u
-            previous = upper - lower
-         else
-            previous = abs(step)
-         end if
-         u = u + step
+         if (vanishes(at)) return
+         call narrow(side, at, bracket)
+         if (is_narrow(bracket)) return
+         call advance(side*at%residual, slope_of_residual(par, arc, w, at), bracket)
       end do
    end subroutine newton
+
+   !> True where the residual is rounding.
+   pure logical function vanishes(at)
+      type(angle_t), intent(in) :: at
+
+      vanishes = abs(at%residual) <= ROOT_TOLERANCE*at%scale
+   end function vanishes
+
+   !> True of a bracket that rounding does not divide.
+   pure logical function is_narrow(b)
+      type(bracket_t), intent(in) :: b
+
+      is_narrow = b%upper - b%lower <= 2.0_wp*epsilon(b%u)*b%upper
+   end function is_narrow
+
+   !> Takes the angle that was tried as an end of the bracket.
+   pure subroutine narrow(side, at, b)
+      real(wp), intent(in) :: side
+      type(angle_t), intent(in) :: at
+      type(bracket_t), intent(inout) :: b
+
+      if (side*at%residual < 0.0_wp) then
+         b%lower = b%u
+      else
+         b%upper = b%u
+      end if
+   end subroutine narrow
+
+   !> The next angle to try: Newton's, or the middle where that leads out of the bracket or is no shorter by half.
+   pure subroutine advance(residual, by_angle, b)
+      real(wp), intent(in) :: residual, by_angle   !< [kPa]: in units of the side; its slope by the angle, with a sign
+      type(bracket_t), intent(inout) :: b
+      real(wp) :: slope, step
+
+      slope = by_angle*2.0_wp/(1.0_wp + b%u*b%u)
+      step = 2.0_wp*b%previous
+      if (slope > 0.0_wp) step = -residual/slope
+      if (abs(step) > 0.5_wp*b%previous .or. b%u + step <= b%lower .or. b%u + step >= b%upper) then
+         step = 0.5_wp*(b%lower + b%upper) - b%u
+         b%previous = b%upper - b%lower
+      else
+         b%previous = abs(step)
+      end if
+      b%u = b%u + step
+   end subroutine advance
 
    !> False where a root before that of w and at is possible: a cap, or a change between the floor and a small x, bends
    !> the residual back. Where x rises up to the root only the floor's equation can have one, before x passes the floor:
@@ -193,24 +235,44 @@ contains
       type(moduli_t) :: passing
       type(angle_t) :: there
       real(wp) :: x_q
+      integer :: company
 
-      single_root = max(arc%r_q, abs(at%sine))*sqrt(arc%x_t**2 + arc%x_q**2) <= NEARLY_ALONG*par%x_floor
-      if (single_root .or. w%capped_h .or. w%capped_d) return
-      ! Always floored (on less than a right angle x cannot become positive between two negative ends), or never near.
-      single_root = arc%x_t**2 + arc%x_q**2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp .or. &
-                    min(arc%x_t, w%x) > 2.0_wp*par%x_floor
-      ! an option that bends D and 1/h with x bends the residual wherever x changes
-      if (w%own%bends) single_root = max(arc%x_t, w%x) < 0.0_wp .or. arc%x_t**2 + arc%x_q**2 < par%x_floor**2
-      if (w%own%bends) return
+      company = company_of(par, arc, side, at, w)
+      single_root = company == ALONE
+      if (company /= UNKNOWN) return
       x_q = side*arc%x_q
-      if (single_root .or. at%cosine < NOT_FAR .or. at%cosine*x_q < abs(at%sine)*arc%x_t) return
-      single_root = w%floored .or. arc%x_t >= par%x_floor
-      if (single_root) return
       passing = w%moduli_t
       call evaluate_direction(par, eq, arc, side*(par%x_floor - arc%x_t) &
                               /(x_q + sqrt(max(arc%x_t**2 + x_q**2 - par%x_floor**2, 0.0_wp))), passing, there)
       single_root = side*there%residual < 0.0_wp .and. .not. (passing%capped_h .or. passing%capped_d)
    end function single_root
+
+   !> ALONE, SEVERAL or UNKNOWN: what is known at t and at a root tells that there is no other, or that there may be, or
+   !> the residual where x passes its floor decides.
+   pure integer function company_of(par, arc, side, at, w) result(company)
+      type(params_t), intent(in) :: par
+      type(arc_t), intent(in) :: arc
+      real(wp), intent(in) :: side
+      type(angle_t), intent(in) :: at
+      type(rate_t), intent(in) :: w
+      real(wp) :: reach2
+
+      reach2 = arc%x_t**2 + arc%x_q**2
+      company = ALONE
+      if (max(arc%r_q, abs(at%sine))*sqrt(reach2) <= NEARLY_ALONG*par%x_floor) return
+      company = SEVERAL
+      if (w%capped_h .or. w%capped_d) return
+      company = ALONE
+      ! always floored: on less than a right angle x cannot become positive between two negative ends
+      if (reach2 < par%x_floor**2 .or. max(arc%x_t, w%x) < 0.0_wp) return
+      company = SEVERAL
+      if (w%own%bends) return   ! an option that bends D and 1/h with x bends the residual wherever x changes
+      company = ALONE
+      if (min(arc%x_t, w%x) > 2.0_wp*par%x_floor) return   ! never near the floor
+      company = SEVERAL
+      if (at%cosine < NOT_FAR .or. at%cosine*side*arc%x_q < abs(at%sine)*arc%x_t) return
+      company = merge(ALONE, UNKNOWN, w%floored .or. arc%x_t >= par%x_floor)
+   end function company_of
 
    !> The first interval of the arc up to tau = `last` (a root already known, or an end) in which the residual becomes
    !> positive at an admissible angle. Some points inside are looked at together; an interval between them is looked at
@@ -272,10 +334,6 @@ contains
       type(moduli_t) :: m
       type(angle_t) :: at
 
-      m%lode = 1.0_wp
-      m%a_d = eq%a_0
-      m%r_b = eq%r_b_1
-      m%r_d = eq%r_d_1
       call evaluate_direction(par, eq, arc, 0.0_wp, m, at)
       residual = side*at%residual
    end function residual_at_t
@@ -298,18 +356,10 @@ contains
          c(i) = 2.0_wp/(1.0_wp + tau*tau) - 1.0_wp
          s(i) = tau*(1.0_wp + c(i))
       end do
-      lode = 1.0_wp
-      if (par%lode) then
-         do i = 1, POINTS
-            lode(i) = lode_factor(par, trace_cube(arc, c(i), s(i)))
-         end do
-      end if
-      a_d = eq%a_0
-      if (par%fabric) then
-         do i = 1, POINTS
-            a_d(i) = dilatancy_factor(par, eq%a_0, c(i)*arc%z_t + s(i)*arc%z_q)
-         end do
-      end if
+      do i = 1, POINTS
+         lode(i) = lode_factor(par, trace_cube(arc, c(i), s(i)))
+         a_d(i) = dilatancy_factor(par, eq%a_0, c(i)*arc%z_t + s(i)*arc%z_q)
+      end do
       do i = 1, POINTS
          m%r_n = c(i)*arc%r_t + s(i)*arc%r_q
          m%x = c(i)*arc%x_t + s(i)*arc%x_q
@@ -322,7 +372,7 @@ contains
       end do
    end subroutine residuals
 
-   !> The direction equation at the angle whose half has the tangent tau. What belongs to a switch that is off stays.
+   !> The direction equation at the angle whose half has the tangent tau.
    pure subroutine evaluate_direction(par, eq, arc, tau, m, at)
       type(params_t), intent(in) :: par
       type(equation_t), intent(in) :: eq
@@ -335,15 +385,11 @@ contains
       at%sine = tau*(1.0_wp + at%cosine)
       m%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
       m%x = at%cosine*arc%x_t + at%sine*arc%x_q
-      if (par%fabric) then
-         m%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
-         m%a_d = dilatancy_factor(par, eq%a_0, m%z_n)
-      end if
-      if (par%lode) then
-         m%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
-         m%r_b = eq%r_b_1*m%lode
-         m%r_d = eq%r_d_1*m%lode
-      end if
+      m%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
+      m%a_d = dilatancy_factor(par, eq%a_0, m%z_n)
+      m%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
+      m%r_b = eq%r_b_1*m%lode
+      m%r_d = eq%r_d_1*m%lode
       call find_moduli(eq, m)
       at%residual = m%gamma*at%sine - m%beta*arc%r_q
       at%scale = m%gamma + abs(m%beta)*arc%r_q
@@ -362,10 +408,8 @@ contains
       call slopes_at(par, w, w%moduli_t, s)
       dr = at%cosine*arc%r_q - at%sine*arc%r_t
       dx = at%cosine*arc%x_q - at%sine*arc%x_t
-      dz = 0.0_wp
-      if (par%fabric) dz = at%cosine*arc%z_q - at%sine*arc%z_t
-      d_lode = 0.0_wp
-      if (par%lode) d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
+      dz = at%cosine*arc%z_q - at%sine*arc%z_t
+      d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
       dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
       if (w%own%bends) dd = dd + s%d_x*dx
       dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode

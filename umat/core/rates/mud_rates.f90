@@ -12,7 +12,7 @@ module mud_rates
    use mud_critical_state, only: state_parameter, bounding_ratio, dilatancy_ratio, bounding_norm
    use mud_direction, only: find_direction
    use mud_flow, only: fabric_rate
-   use mud_hardening, only: kinematic_modulus, isotropic_hardening, shear_weight, NO_HARDENING
+   use mud_hardening, only: kinematic_modulus, isotropic_t, isotropic_hardening, shear_weight, NO_HARDENING
    use mud_options, only: look_at_numbers, rates_of_numbers
    use mud_rate, only: rate_t
    use mud_vector, only: NY, Y_Z, Y_Z_END
@@ -68,14 +68,18 @@ contains
       integer, intent(in) :: mode               !< MODE_*
       type(rate_t), intent(inout) :: w          !< All of it is set.
       type(rate_t), intent(in), optional :: near   !< A rate of nearly the same state: its direction is where to begin.
-      real(wp) :: d_v, d_e(6), d_norm
+      real(wp) :: d_v, d_e(6), d_norm, weight
 
       d_v = trace(d_strain)
       d_e = deviator(d_strain)
       d_norm = norm(d_strain)
       call evaluate_point(par, at, y(1:6), y(Y_Z:Y_Z_END), w)
       call look_at_numbers(par, y, w%p, w%a_0, w%b_0, w%own)
-      if (at%rests) w%iso = NO_HARDENING
+      w%iso = NO_HARDENING
+      if (par%isotropic .and. .not. at%rests) then
+         weight = weight_at(par, w)
+         if (weight > 0.0_wp) w%iso = hardening_at(par, at%e, weight, w)
+      end if
 
       call start_direction(near, w)
       w%iso_kept = .false.
@@ -98,9 +102,7 @@ contains
          end if
       end if
 
-      w%d_sigma = 2.0_wp*w%g*(d_e - w%l*w%n) + w%d_p*IDENTITY
-      w%d_z = fabric_rate(par, w%l, w%d, w%n, w%z)
-      w%d_eps_q = SQRT_2_3*w%l
+      call finish_rate(par, d_e, w)
       call rates_of_numbers(par, w%l, w%d, w%own, w%d_own)
    end subroutine rate_at
 
@@ -138,7 +140,6 @@ contains
       type(conditions_t), intent(in) :: at
       real(wp), intent(in) :: sigma(6), z(6)
       type(rate_t), intent(inout) :: w
-      real(wp) :: weight
 
       call stress_ratio(par, sigma, w%p, w%r)
       w%r_norm = norm(w%r)
@@ -152,15 +153,25 @@ contains
       w%m_d = dilatancy_ratio(par, w%psi)
       w%a_0 = par%a_0
       w%b_0 = kinematic_modulus(par, at%e, w%p)
-      w%iso = NO_HARDENING
-      if (par%isotropic) then
-         weight = shear_weight(w%r_norm, bounding_norm(par, w%r, w%r_norm, w%m_b))
-         if (weight > 0.0_wp) then
-            w%iso = isotropic_hardening(par, w%bond, at%e, w%p, swelling_slope(w%k, at%e, w%p), 1.5_wp*w%r_norm**2, &
-                                        weight)
-         end if
-      end if
    end subroutine evaluate_point
+
+   !> Share of the isotropic mechanism that shear leaves at a point that is evaluated [-].
+   pure real(wp) function weight_at(par, w) result(weight)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+
+      weight = shear_weight(w%r_norm, bounding_norm(par, w%r, w%r_norm, w%m_b))
+   end function weight_at
+
+   !> The isotropic mechanism there, at a void ratio [-].
+   pure function hardening_at(par, e, weight, w) result(iso)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: e, weight
+      type(rate_t), intent(in) :: w
+      type(isotropic_t) :: iso
+
+      iso = isotropic_hardening(par, w%bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*w%r_norm**2, weight)
+   end function hardening_at
 
    !> Loading index, direction and rate of p' with or without the isotropic mechanism.
    pure subroutine load(par, d_v, d_e, d_norm, d_pc, mode, active, w)
@@ -170,8 +181,34 @@ contains
       integer, intent(in) :: mode
       logical, intent(in) :: active      !< The isotropic mechanism acts.
       type(rate_t), intent(inout) :: w   !< w%loading: w%n is the direction for another choice
-      real(wp) :: volumetric, terms
-      logical :: known
+      real(wp) :: volumetric
+      logical :: known, shears
+
+      call find_drive(d_v, d_e, d_norm, d_pc, active, w, volumetric, shears)
+      w%no_root = .false.
+      w%several = .false.
+      known = w%loading
+      w%loading = .false.
+      if (mode /= MODE_ELASTIC .and. shears) call find_direction(par, known, w)
+      if (.not. w%loading) then
+         w%n = 0.0_wp
+         w%l = 0.0_wp
+         w%d = 0.0_wp
+         w%x = 0.0_wp
+         w%floored = .false.
+         w%capped_d = .false.
+         w%capped_h = .false.
+      end if
+      w%d_p = volumetric - w%k_e*w%l*w%d
+   end subroutine load
+
+   !> t with or without the isotropic mechanism, and the rate of p' without shear.
+   pure subroutine find_drive(d_v, d_e, d_norm, d_pc, active, w, volumetric, shears)
+      real(wp), intent(in) :: d_v, d_e(6), d_norm, d_pc   !< as in load
+      logical, intent(in) :: active
+      type(rate_t), intent(inout) :: w
+      real(wp), intent(out) :: volumetric   !< [kPa]
+      logical, intent(out) :: shears        !< t is no rounding
 
       w%iso_active = active
       if (active) then
@@ -184,21 +221,17 @@ contains
       volumetric = w%k_e*(d_v - w%b_rate)
       w%t = 2.0_wp*w%g*d_e - w%r*volumetric
       w%t_norm = norm(w%t)
-      w%no_root = .false.
-      w%several = .false.
-      known = w%loading
-      w%loading = .false.
-      terms = 2.0_wp*w%g*d_norm + max(w%r_norm, SMALLEST_RATIO)*abs(volumetric)
-      if (mode /= MODE_ELASTIC .and. w%t_norm > PURE_VOLUMETRIC*terms) call find_direction(par, known, w)
-      if (.not. w%loading) then
-         w%n = 0.0_wp
-         w%l = 0.0_wp
-         w%d = 0.0_wp
-         w%x = 0.0_wp
-         w%floored = .false.
-         w%capped_d = .false.
-         w%capped_h = .false.
-      end if
-      w%d_p = volumetric - w%k_e*w%l*w%d
-   end subroutine load
+      shears = w%t_norm > PURE_VOLUMETRIC*(2.0_wp*w%g*d_norm + max(w%r_norm, SMALLEST_RATIO)*abs(volumetric))
+   end subroutine find_drive
+
+   !> The rates by a loading index and a direction; of p' they are known.
+   pure subroutine finish_rate(par, d_e, w)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: d_e(6)   !< as in load
+      type(rate_t), intent(inout) :: w
+
+      w%d_sigma = 2.0_wp*w%g*(d_e - w%l*w%n) + w%d_p*IDENTITY
+      w%d_z = fabric_rate(par, w%l, w%d, w%n, w%z)
+      w%d_eps_q = SQRT_2_3*w%l
+   end subroutine finish_rate
 end module mud_rates

@@ -60,7 +60,7 @@ contains
       if (w%loading .and. .not. stress_only) then
          rates(:, Y_SHEAR) = SQRT_2_3*x%dl
          if (has_numbers(par)) call changes_of_numbers(par, w%l, w%d, w%own, x%dl, x%flow, x%p, y, rates)
-         if (par%fabric .and. w%d < 0.0_wp) then
+         if (par%fabric > 0.0_wp .and. w%d < 0.0_wp) then
             call fill_fabric(par, w, y, strain, centre, changes, x, rates(:, Y_Z:Y_Z_END))
          end if
       end if

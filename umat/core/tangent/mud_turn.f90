@@ -49,19 +49,11 @@ contains
       real(wp) :: h_n(6), d_n(6), g_n(6)
 
       associate (s => turn%slopes)
+         g_n = (3.0_wp*lode_slope(par, w%lode)*SQRT_2_3)*deviator(square(w%n))
          d_n = s%d_r*w%r
          if (w%own%bends) d_n = d_n + s%d_x*w%r_moved
-         h_n = s%h_r*w%r + s%h_x*w%r_moved
-         if (par%fabric) then
-            d_n = d_n + s%d_z*w%z
-            h_n = h_n + s%h_z*w%z
-         end if
-         g_n = 0.0_wp
-         if (par%lode) then
-            g_n = (3.0_wp*lode_slope(par, w%lode)*SQRT_2_3)*deviator(square(w%n))
-            d_n = d_n + (s%d_r_d*w%m_d)*g_n
-            h_n = h_n + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*g_n
-         end if
+         d_n = d_n + s%d_z*w%z + (s%d_r_d*w%m_d)*g_n
+         h_n = s%h_r*w%r + s%h_x*w%r_moved + s%h_z*w%z + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*g_n
       end associate
       turn%d_n = d_n - ddot(d_n, w%n)*w%n
       turn%h_n = h_n - ddot(h_n, w%n)*w%n
