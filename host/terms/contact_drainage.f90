@@ -104,7 +104,7 @@ contains
 
       select type (contacts => solution%system%contacts)
       type is (contacts_t)
-         if (contacts%start_points(solution%state%x)) then
+         if (contacts%probe(solution%state%x)) then
             call seal(self, model, contacts, solution%constraint)
          else
             call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//contacts%message()//'.')
@@ -127,7 +127,8 @@ contains
          associate (t => contacts%interfaces(c))
             t%sealed = 0
             if (.not. self%follows(c) .or. .not. t%acts) cycle
-            sealed = t%point%pressure > 0.0_wp .and. t%point%coverage >= HALF
+            sealed = t%probe%pressure > 0.0_wp
+            where (sealed) sealed = t%probe%weight/t%probe%whole >= HALF
             t%sealed = count(sealed)
             do f = 1, size(model%fixes)
                if (self%gives_way(f, c)) constraint%released(f, t%slave%node) = &
