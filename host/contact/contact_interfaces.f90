@@ -6,8 +6,8 @@ module contact_interfaces
    use kinds, only: wp
    use contact_friction, only: friction_t
    use contact_geometry, only: contact_geometry_t, contact_prepare
-   use contact_penalty, only: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
-                              contact_evaluate, points_of, slid_work
+   use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, &
+                              slid_work
    use contact_plate, only: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
    use plate_motion, only: plate_motion_t, plate_positions
    use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
@@ -20,7 +20,7 @@ module contact_interfaces
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, shortest_edge, plate_link_t, new_interface, &
-             tie_to_plate, plate_surface, tangential_traction, probe_interface
+             tie_to_plate, plate_surface, tangential_tractions
 
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of a displacement: of the node, and of its place by three
                                                !< unknowns.
@@ -44,9 +44,7 @@ module contact_interfaces
       type(contact_workspace_t) :: work
       type(contact_result_t) :: result      !< Outcome at the iterates of a step.
       type(contact_result_t) :: probe       !< Outcome at other displacements, independent of the step.
-      type(contact_point_t), allocatable :: point(:)   !< State of every slave node at the start of the step.
-      logical :: rubs = .false.             !< The contact has friction.
-      type(friction_t) :: friction          !< State of friction from which the step starts.
+      type(friction_t), allocatable :: friction   !< State from which the step starts; not allocated: it has none.
       real(wp), allocatable :: slave_u(:, :), master_u(:, :)   !< (2, nodes) Displacements there [m].
       type(plate_response_t) :: on_plate    !< Forces where the master is a plate.
       type(plate_link_t) :: plate           !< Plate whose face is the master.
@@ -70,7 +68,7 @@ module contact_interfaces
       type(contact_status_t) :: status      !< Status of the first interface that failed.
    contains
       procedure :: act, evaluate, missing, add, follow_turns, message, forces, find_closed, stretch
-      procedure :: probe, start_points, begin_friction, accept_friction, exchange_friction
+      procedure :: probe, begin_friction, accept_friction, exchange_friction
    end type contacts_t
 contains
    !> Surface of the edges of a boundary.
@@ -133,11 +131,9 @@ contains
       one%work = new_workspace(one%geometry)
       one%result = new_result(one%geometry)
       one%probe = new_result(one%geometry)
-      one%point = points_of(one%probe)
       nodes = [slave%node, master%node]
       one%unknown = reshape(dofs%of(:DISPLACEMENTS, nodes), [DISPLACEMENTS*size(nodes)])
-      one%rubs = has_friction(options)
-      if (one%rubs) then
+      if (has_friction(options)) then
          one%friction = friction_t(0*slave%x0, 0*master%x0, 0*one%result%gap, 0*one%result%gap, &
                                    0*one%result%side)
          one%slave_u = 0*slave%x0
@@ -161,7 +157,6 @@ contains
       one%spring = penalty*lengths_of_nodes(boundary%edges, boundary%x0)
       one%result = new_spring_result(one%geometry, one%spring)
       one%probe = one%result
-      one%point = points_of(one%probe)
       one%unknown = reshape(dofs%of(:DISPLACEMENTS, boundary%node), [DISPLACEMENTS*size(boundary%node)])
       call link(dofs, one)
    end subroutine tie_to_plate
@@ -268,18 +263,24 @@ contains
       logical, intent(in) :: with_tangent
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
+      real(wp) :: at(2, size(t%master%x0, 2))
 
       if (allocated(t%spring)) then
          call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), displacements_of_master(t, x), result)
          status = contact_status_t()
-      else if (t%rubs) then
+         return
+      end if
+      if (allocated(t%friction)) then
          t%friction%slave_dx = x(:DISPLACEMENTS, t%slave%node) - t%slave_u
          t%friction%master_dx = displacements_of_master(t, x) - t%master_u
-         call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, result, status, &
-                              t%friction)
-      else
-         call probe_interface(t%geometry, t%slave, t%master, t%plate, x, with_tangent, t%work, result, status)
       end if
+      if (allocated(t%plate%motion)) then
+         at = plate_positions(t%plate%motion, t%master%x0, motion_of(t%plate, x))
+      else
+         at = t%master%x0 + x(:DISPLACEMENTS, t%master%node)
+      end if
+      call contact_evaluate(t%geometry, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), at, with_tangent, t%work, &
+                            result, status, t%friction)
    end subroutine probe_one
 
    !> Displacements of the nodes of the master, or of the face of the plate [m].
@@ -305,7 +306,7 @@ contains
       good = .true.
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
-            if (.not. t%rubs) cycle
+            if (.not. allocated(t%friction)) cycle
             ! Where it does not act nothing is held.
             if (.not. t%acts) t%friction%traction = 0.0_wp
             if (.not. t%acts) cycle
@@ -327,7 +328,7 @@ contains
 
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
-            if (t%rubs) t%friction%side = merge(0, t%result%side, fresh)
+            if (allocated(t%friction)) t%friction%side = merge(0, t%result%side, fresh)
          end associate
       end do
    end subroutine follow_turns
@@ -343,7 +344,7 @@ contains
       dissipated = 0.0_wp
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
-            if (.not. t%rubs .or. .not. t%acts) cycle
+            if (.not. allocated(t%friction) .or. .not. t%acts) cycle
             call probe_one(t, x, .false., t%probe, self%status)
             ! What a step has ended with, no kernel refuses.
             if (self%status%code /= CONTACT_OK) cycle
@@ -353,52 +354,14 @@ contains
       end do
    end subroutine accept_friction
 
-   !> Traction of a slave node along the slave's tangent at the start of the step [kPa].
-   pure real(wp) function tangential_traction(t, node) result(traction)
+   !> Tractions of the slave nodes along the slave's tangent at the start of the step [kPa].
+   pure function tangential_tractions(t) result(tractions)
       type(contact_interface_t), intent(in) :: t
-      integer, intent(in) :: node   !< Number of the node on the slave.
+      real(wp) :: tractions(size(t%probe%traction))
 
-      traction = 0.0_wp
-      if (t%rubs) traction = t%friction%traction(node)
-   end function tangential_traction
-
-   !> Sets the states of the contact points at the displacements at the start of a step; false if a kernel refuses them.
-   !> docs/theory/contact.md section 5. A step that is cut, and a restart, find the same states.
-   logical function start_points(self, x) result(good)
-      class(contacts_t), intent(inout) :: self
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
-      integer :: i
-
-      good = self%probe(x)
-      if (.not. good) return
-      do i = 1, size(self%interfaces)
-         associate (t => self%interfaces(i))
-            if (t%acts) t%point = points_of(t%probe)
-         end associate
-      end do
-   end function start_points
-
-   !> One pair of surfaces at given displacements. status: as of contact_evaluate.
-   subroutine probe_interface(geometry, slave, master, plate, x, with_tangent, work, result, status, friction)
-      type(contact_geometry_t), intent(in) :: geometry
-      type(surface_t), intent(in) :: slave, master
-      type(plate_link_t), intent(in) :: plate   !< Plate whose face is the master, if it is one.
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
-      logical, intent(in) :: with_tangent
-      type(contact_workspace_t), intent(inout) :: work
-      type(contact_result_t), intent(inout) :: result
-      type(contact_status_t), intent(out) :: status
-      type(friction_t), intent(in), optional :: friction
-      real(wp) :: at(2, size(master%x0, 2))
-
-      if (allocated(plate%motion)) then
-         at = plate_positions(plate%motion, master%x0, motion_of(plate, x))
-      else
-         at = master%x0 + x(:DISPLACEMENTS, master%node)
-      end if
-      call contact_evaluate(geometry, slave%x0 + x(:DISPLACEMENTS, slave%node), at, with_tangent, work, result, &
-                            status, friction)
-   end subroutine probe_interface
+      tractions = 0.0_wp
+      if (allocated(t%friction)) tractions = t%friction%traction
+   end function tangential_tractions
 
    function missing(self, pattern) result(pairs)
       class(contacts_t), intent(in) :: self
@@ -559,8 +522,8 @@ contains
 
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
-            if (t%rubs) call archive%exchange('friction_'//whole(i), t%friction%traction, 'kPa', &
-                                              'traction of every slave node of a contact with friction')
+            if (allocated(t%friction)) call archive%exchange('friction_'//whole(i), t%friction%traction, 'kPa', &
+               'traction of every slave node of a contact with friction')
          end associate
       end do
    end subroutine exchange_friction

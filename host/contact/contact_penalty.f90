@@ -15,8 +15,7 @@ module contact_penalty
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: contact_workspace_t, contact_result_t, contact_point_t, new_workspace, new_result, &
-             contact_evaluate, points_of, slid_work
+   public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, slid_work
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
    real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Share of the penalty, where both gaps are penalised [-].
@@ -62,22 +61,7 @@ module contact_penalty
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
       integer :: checks = 0                     !< Pairs of boxes the search compared.
    end type contact_result_t
-
-   !> State of a contact point, that is of a slave node, at the start of a step: it acts unchanged throughout the step.
-   type :: contact_point_t
-      real(wp) :: pressure = 0.0_wp   !< p_A >= 0 [kPa]
-      real(wp) :: coverage = 0.0_wp   !< Share of w_A that lies opposite the master [-].
-   end type contact_point_t
 contains
-   !> The states of the contact points that belong to an evaluation: docs/theory/contact.md section 5.
-   pure function points_of(result) result(point)
-      type(contact_result_t), intent(in) :: result
-      type(contact_point_t) :: point(size(result%pressure))
-
-      point%pressure = result%pressure
-      where (result%whole > 0.0_wp) point%coverage = result%weight/result%whole
-   end function points_of
-
    !> Room for evaluations of prepared surfaces.
    pure function new_workspace(geometry) result(work)
       type(contact_geometry_t), intent(in) :: geometry

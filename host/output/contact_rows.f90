@@ -3,9 +3,7 @@
 module contact_rows
    use kinds, only: wp
    use boundary_loads, only: plate_loads
-   use contact_interfaces, only: contacts_t, contact_interface_t, probe_interface, tangential_traction
-   use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result
-   use contact_types, only: contact_status_t, CONTACT_OK
+   use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions
    use model_types, only: model_t, plate_t
    use porous_domain, only: model_state_t
    use surface_forces, only: surface_forces_t
@@ -81,45 +79,33 @@ contains
    end function contact_row
 
    !> Slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at the
-   !> start, weight, share of it that is covered, gap, pressure, shear stress of
-   !> friction. A state that a kernel refuses has none.
+   !> start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step. A
+   !> state that a kernel refuses has none.
    subroutine contact_nodes(model, contacts, state, table)
       type(model_t), intent(in) :: model
       class(surface_forces_t), intent(in) :: contacts
       type(model_state_t), intent(in) :: state
       real(wp), allocatable, intent(out) :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
+      type(contacts_t) :: trial
+      real(wp), allocatable :: shear(:)
+      integer :: c, i
 
       allocate (table(8, 0))
       select type (contacts)
       type is (contacts_t)
-         call list_nodes(contacts%interfaces(:size(model%contacts)), state, table)
+         trial = contacts
+      class default
+         return
       end select
-   end subroutine contact_nodes
-
-   subroutine list_nodes(interfaces, state, table)
-      type(contact_interface_t), intent(in) :: interfaces(:)
-      type(model_state_t), intent(in) :: state
-      real(wp), allocatable, intent(inout) :: table(:, :)
-      type(contact_workspace_t) :: work
-      type(contact_result_t) :: found
-      type(contact_status_t) :: status
-      real(wp), allocatable :: rows(:, :)
-      integer :: c, i
-
-      allocate (rows(8, 0))
-      do c = 1, size(interfaces)
-         associate (t => interfaces(c))
+      if (.not. trial%probe(state%x)) return
+      do c = 1, size(model%contacts)
+         associate (t => trial%interfaces(c), found => trial%interfaces(c)%probe)
             if (.not. t%acts) cycle
-            work = new_workspace(t%geometry)
-            found = new_result(t%geometry)
-            call probe_interface(t%geometry, t%slave, t%master, t%plate, state%x, .false., work, found, &
-                                 status)
-            if (status%code /= CONTACT_OK) return
-            rows = reshape([rows, (real(c, wp), t%slave%x0(:, i), found%weight(i), found%weight(i)/found%whole(i), &
-                                   found%gap(i), found%pressure(i), tangential_traction(t, i), &
-                                   i=1, size(t%slave%node))], [8, size(rows, 2) + size(t%slave%node)])
+            shear = tangential_tractions(t)
+            table = reshape([table, (real(c, wp), t%slave%x0(:, i), found%weight(i), found%weight(i)/found%whole(i), &
+                                     found%gap(i), found%pressure(i), shear(i), i=1, size(shear))], &
+                            [8, size(table, 2) + size(shear)])
          end associate
       end do
-      call move_alloc(rows, table)
-   end subroutine list_nodes
+   end subroutine contact_nodes
 end module contact_rows

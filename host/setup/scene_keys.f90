@@ -22,7 +22,7 @@ module scene_keys
    use scene_types, only: scene_t, scene_law_t, scene_region_t, scene_fix_t, scene_load_t, scene_plate_t, &
                           scene_contact_t, scene_tie_t, item_of
    use spelling, only: nearest_name
-   use term_registry, only: own_groups, declare_keys
+   use term_registry, only: with_own_groups, declare_keys
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
@@ -42,21 +42,17 @@ contains
       type(key_table_t) :: table
       type(scene_t) :: nothing
       type(fault_t) :: fault
-      character(12), allocatable :: groups_of_terms(:)
+      character(12), allocatable :: names(:)
       integer :: g
 
-      allocate (groups_of_terms, source=own_groups())
+      allocate (names, source=with_own_groups(GROUPS))
       table = listing('')
       call make_lists(nothing)
-      do g = 1, size(GROUPS)
-         table%group%name = GROUPS(g)
+      do g = 1, size(names)
+         table%group%name = names(g)
          ! What a group lacks is no fault of a list.
          fault = fault_t()
          call take_group(table, nothing, fault)
-         call declare_keys(table)
-      end do
-      do g = 1, size(groups_of_terms)
-         table%group%name = groups_of_terms(g)
          call declare_keys(table)
       end do
       call move_alloc(table%keys, keys)

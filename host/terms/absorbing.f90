@@ -19,12 +19,11 @@ module absorbing
    use material_point, only: response_t, batch_report_t
    use model_types, only: model_t, action_t, factor_at
    use name_search, only: mesh_group, defined_name, check_stages
-   use namelists, only: group_t
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: model_state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of, groups_named
+   use scene_types, only: scene_t, item_of
    use solution, only: solution_t
    use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -49,7 +48,7 @@ module absorbing
       logical :: at_start = .false.              !< Of a stage: what the sides held is not known yet.
    contains
       procedure, nopass :: declare
-      procedure :: group, build, begin_run, begin_stage, before_step, exchange
+      procedure :: build, begin_run, begin_stage, before_step, exchange
    end type absorbing_t
 
    !> The ground behind an edge.
@@ -58,19 +57,12 @@ module absorbing
       real(wp) :: water = 0.0_wp, air = 0.0_wp      !< Outflow over the rate of the pressure, k/(eta c_p) [m/(kPa)].
    end type behind_t
 contains
-   function group(self) result(name_of_group)
-      class(absorbing_t), intent(in) :: self
-      character(:), allocatable :: name_of_group
-
-      name_of_group = NAME
-   end function group
-
    subroutine declare(k)
       type(key_table_t), intent(inout) :: k
       type(side_t) :: nothing
       character(LENGTH) :: boundary, history
 
-      if (k%group%name == NAME) call take(k, nothing, boundary, history)
+      call take(k, nothing, boundary, history)
    end subroutine declare
 
    subroutine take(k, side, boundary, history)
@@ -94,29 +86,26 @@ contains
    end subroutine take
 
    !> The boundaries. Fault EXIT_GROUP: a boundary, history or stage that is not defined, or a group without edges.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(absorbing_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       character(LENGTH) :: boundary, history
       integer :: i
 
-      allocate (groups, source=groups_named(scene, NAME))
-      there = size(groups) > 0
-      allocate (self%sides(size(groups)))
-      do i = 1, size(groups)
+      there = size(tables) > 0
+      allocate (self%sides(size(tables)))
+      do i = 1, size(tables)
          associate (side => self%sides(i))
-            side%scene_item_t = item_of(groups(i))
+            side%scene_item_t = item_of(tables(i)%group)
             side%what = '&'//NAME
             side%along_normal = .true.
             side%bears = .true.
             side%damps = .true.
-            table%group = groups(i)
-            call take(table, side, boundary, history)
+            call take(tables(i), side, boundary, history)
             side%group = mesh_group(model%domain%mesh, boundary, place_of(side), fault)
             if (fault%code == 0 .and. history /= '') &
                side%amplitude = defined_name('history', history, model%amplitudes%name, place_of(side), fault)

@@ -13,20 +13,17 @@ module buffer
    use linear_system, only: join_unknowns
    use model_types, only: model_t
    use name_search, only: defined_name, check_stages
-   use namelists, only: group_t
    use texts, only: LENGTH
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of, acts_in
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of, groups_named
+   use scene_types, only: scene_t, item_of
    use solution, only: solution_t
    use sparsity_pattern, only: pattern_t, place_of_entry => place_of
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
    public :: buffer_t
-
-   character(*), parameter :: NAME = 'buffer'
 
    !> A spring with a dashpot between two unknowns, which pushes and, if it is to, pulls.
    type, extends(added_forces_t) :: spring_t
@@ -52,21 +49,14 @@ module buffer
       integer, allocatable :: plates(:, :)           !< (2, buffers) Upper and lower ones.
    contains
       procedure, nopass :: declare
-      procedure :: group, build, begin_run, begin_stage
+      procedure :: build, begin_run, begin_stage
    end type buffer_t
 contains
-   function group(self) result(name_of_group)
-      class(buffer_t), intent(in) :: self
-      character(:), allocatable :: name_of_group
-
-      name_of_group = NAME
-   end function group
-
    subroutine declare(k)
       type(key_table_t), intent(inout) :: k
       type(given_t) :: nothing
 
-      if (k%group%name == NAME) call take(k, nothing)
+      call take(k, nothing)
    end subroutine declare
 
    subroutine take(k, one)
@@ -86,24 +76,21 @@ contains
    end subroutine take
 
    !> Fault EXIT_GROUP: a plate or stage that is not defined. EXIT_INPUT: one plate at both ends.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(buffer_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       integer :: i
 
-      allocate (groups, source=groups_named(scene, NAME))
-      there = size(groups) > 0
-      allocate (self%all(size(groups)), self%plates(2, size(groups)))
-      do i = 1, size(groups)
+      there = size(tables) > 0
+      allocate (self%all(size(tables)), self%plates(2, size(tables)))
+      do i = 1, size(tables)
          associate (one => self%all(i))
-            one%scene_item_t = item_of(groups(i))
-            table%group = groups(i)
-            call take(table, one)
+            one%scene_item_t = item_of(tables(i)%group)
+            call take(tables(i), one)
             self%plates(1, i) = defined_name('upper', one%upper, model%plates%name, place_of(one), fault)
             if (fault%code == 0) &
                self%plates(2, i) = defined_name('lower', one%lower, model%plates%name, place_of(one), fault)

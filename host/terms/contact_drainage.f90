@@ -8,20 +8,17 @@ module contact_drainage
    use kinds, only: wp
    use key_table, only: key_table_t
    use model_types, only: model_t
-   use namelists, only: group_t
    use contact_interfaces, only: contacts_t
    use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, groups_named, item_of
+   use scene_types, only: scene_t, item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: contact_drainage_t
-
-   character(*), parameter :: IN_GROUP = 'contact'
 
    type, extends(scene_term_t) :: contact_drainage_t
       logical, allocatable :: follows(:)        !< (contacts) Whether its drainage follows its state.
@@ -38,7 +35,7 @@ contains
       logical :: follows
 
       follows = .false.
-      if (k%group%name == IN_GROUP) call take(k, follows)
+      call take(k, follows)
    end subroutine declare
 
    subroutine take(k, follows)
@@ -51,24 +48,21 @@ contains
 
    !> Which &fix give way to which contacts: those that prescribe a pressure on all nodes of an edge of the slave. Fault
    !> EXIT_INPUT: the scene has no pressures, or a contact whose drainage follows its state has no such &fix.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(contact_drainage_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       integer :: c, f
 
-      allocate (groups, source=groups_named(scene, IN_GROUP))
       allocate (self%follows(size(model%contacts)), source=.false.)
       allocate (self%gives_way(size(model%fixes), size(model%contacts)), source=.false.)
       do c = 1, size(model%contacts)
-         table%group = groups(c)
-         call take(table, self%follows(c))
+         call take(tables(c), self%follows(c))
          if (.not. self%follows(c)) cycle
-         if (.not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(item_of(groups(c)))// &
+         if (.not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(item_of(tables(c)%group))// &
             'drainage = ''state'' needs pressures; see fields in &scene.')
          if (fault%code /= 0) return
          do f = 1, size(model%fixes)
@@ -110,7 +104,7 @@ contains
 
       select type (contacts => solution%system%contacts)
       type is (contacts_t)
-         if (contacts%start_points(solution%state%x)) then
+         if (contacts%probe(solution%state%x)) then
             call seal(self, model, contacts, solution%constraint)
          else
             call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//contacts%message()//'.')
@@ -133,7 +127,8 @@ contains
          associate (t => contacts%interfaces(c))
             t%sealed = 0
             if (.not. self%follows(c) .or. .not. t%acts) cycle
-            sealed = t%point%pressure > 0.0_wp .and. t%point%coverage >= HALF
+            sealed = t%probe%pressure > 0.0_wp
+            where (sealed) sealed = t%probe%weight/t%probe%whole >= HALF
             t%sealed = count(sealed)
             do f = 1, size(model%fixes)
                if (self%gives_way(f, c)) constraint%released(f, t%slave%node) = &

@@ -19,18 +19,13 @@ module drained_regions
 
    type, extends(scene_term_t) :: drained_regions_t
    contains
-      procedure, nopass :: declare
       procedure :: build, prescribe, complete
    end type drained_regions_t
 contains
-   !> Its key is one of regions, which are built before.
-   subroutine declare(k)
-      type(key_table_t), intent(inout) :: k
-   end subroutine declare
-
-   !> Raises no fault.
-   subroutine build(self, scene, model, there, fault)
+   !> Its key is one of regions, which are built before. Raises no fault.
+   subroutine build(self, tables, scene, model, there, fault)
       class(drained_regions_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there

@@ -8,18 +8,15 @@ module friction
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
    use model_types, only: model_t
-   use namelists, only: group_t
    use contact_interfaces, only: contacts_t
    use contact_types, only: contact_options_t, has_friction
    use faults, only: fault_t, raise
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, groups_named
+   use scene_types, only: scene_t
    use solution, only: solution_t
    implicit none (type, external)
    private
    public :: friction_t
-
-   character(*), parameter :: IN_GROUP = 'contact'
 
    type, extends(scene_term_t) :: friction_t
    contains
@@ -31,7 +28,7 @@ contains
       type(key_table_t), intent(inout) :: k
       type(contact_options_t) :: options
 
-      if (k%group%name == IN_GROUP) call take(k, options)
+      call take(k, options)
    end subroutine declare
 
    subroutine take(k, options)
@@ -45,21 +42,18 @@ contains
    end subroutine take
 
    !> The options of the contacts. Raises no fault.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(friction_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       integer :: c
 
       there = .false.
-      allocate (groups, source=groups_named(scene, IN_GROUP))
       do c = 1, size(model%contacts)
-         table%group = groups(c)
-         call take(table, model%contacts(c)%options)
+         call take(tables(c), model%contacts(c)%options)
          there = there .or. has_friction(model%contacts(c)%options)
       end do
    end subroutine build

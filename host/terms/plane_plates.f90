@@ -10,18 +10,16 @@ module plane_plates
    use key_table, only: key_table_t
    use kinds, only: wp
    use model_types, only: model_t, plate_t, coordinate_t
-   use namelists, only: group_t
    use plate_motion, only: plate_motion_t
    use scene_parts, only: acting_values_t, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, groups_named
+   use scene_types, only: scene_t
    use triangle_mesh, only: find_group
    use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
    private
    public :: plane_plates_t, plane_motion_t
 
-   character(*), parameter :: IN_GROUP = 'plate'
    character(*), parameter :: SUFFIX = '.turn'   !< Ends the group of a rotation.
    real(wp), parameter :: LEAST = 1/UNBOUNDED
    integer, parameter :: VERTICAL = 1, ALONG_R = 2, TURN = 3   !< Places of the unknowns of a motion.
@@ -52,7 +50,7 @@ contains
       type(key_table_t), intent(inout) :: k
       type(given_t) :: nothing
 
-      if (k%group%name == IN_GROUP) call take(k, nothing)
+      call take(k, nothing)
    end subroutine declare
 
    subroutine take(k, given)
@@ -75,30 +73,27 @@ contains
    !> Gives plates their motion in the plane, then supports and loads their rotation. Fault EXIT_INPUT: a motion that
    !> axial symmetry has no place for, or that lacks centre or inertia; a rotation or moment of something else.
    !> EXIT_GROUP: the name of its group is taken, or no edges could move with the plate.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(plane_plates_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       type(given_t) :: given
       integer :: i
 
       there = .false.   ! A body with other unknowns is all that a run sees.
-      allocate (groups, source=groups_named(scene, IN_GROUP))
-      do i = 1, size(groups)
-         table%group = groups(i)
+      do i = 1, size(tables)
          given = given_t()
-         call take(table, given)
+         call take(tables(i), given)
          if (.not. given%in_plane) cycle
          associate (plate => model%plates(i))
             if (model%domain%axisymmetric) then
                call raise(fault, EXIT_INPUT, place_of(plate)//'motion = ''plane'' turns the plate, which axial '// &
                           'symmetry has no place for; set geometry = ''plane_strain'' in &scene, or '// &
                           'motion = ''vertical''.')
-            else if (.not. (table%given('center') .and. table%given('inertia'))) then
+            else if (.not. (tables(i)%given('center') .and. tables(i)%given('inertia'))) then
                call raise(fault, EXIT_INPUT, place_of(plate)//'a plate that moves in the plane needs '// &
                           'center = r, z of its centre of mass [m] and inertia, its moment of inertia about it '// &
                           '[Mg m2].')

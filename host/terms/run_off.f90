@@ -10,11 +10,10 @@ module run_off
    use generalised_alpha, only: has_rates
    use key_table, only: key_table_t
    use model_types, only: model_t, factor_at, gravity_at, load_t
-   use namelists, only: group_t
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: acts_in, place_of, stage_t, LOAD_RAIN
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, groups_named
+   use scene_types, only: scene_t
    use solution, only: solution_t
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -22,7 +21,6 @@ module run_off
    private
    public :: run_off_t
 
-   character(*), parameter :: IN_GROUP = 'load'
    character(*), parameter :: NO_SUBTRACTION = 'initial_flow = ''subtract'' of &scene takes a flow away that a '// &
       'seepage face or rain has to see; start from water at rest, or let a stage find the flow (''drain'').'
 
@@ -38,7 +36,7 @@ contains
       real(wp) :: ponding
 
       ponding = 0.0_wp
-      if (k%group%name == IN_GROUP) call take(k, ponding)
+      call take(k, ponding)
    end subroutine declare
 
    subroutine take(k, ponding)
@@ -51,14 +49,13 @@ contains
 
    !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
    !> pond without weight.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(run_off_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       integer :: i, k
 
       there = any(model%fixes%limits) .or. any(model%loads%kind == LOAD_RAIN)
@@ -73,14 +70,12 @@ contains
             end if
          end associate
       end do
-      allocate (groups, source=groups_named(scene, IN_GROUP))
       allocate (self%ponding(size(model%loads)), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
             if (load%kind /= LOAD_RAIN .or. fault%code /= 0) cycle
-            k = findloc(groups%file == load%file .and. groups%line == load%line, .true., dim=1)
-            table%group = groups(k)
-            call take(table, self%ponding(i))
+            k = findloc(tables%group%file == load%file .and. tables%group%line == load%line, .true., dim=1)
+            call take(tables(k), self%ponding(i))
             call check_rain(model, load, self%ponding(i), fault)
          end associate
       end do

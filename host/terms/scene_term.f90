@@ -11,23 +11,17 @@ module scene_term
 
    type, abstract, extends(term_t) :: scene_term_t
    contains
-      procedure(declare_i), deferred, nopass :: declare
+      procedure, nopass :: declare
       procedure(build_i), deferred :: build
-      procedure :: group
    end type scene_term_t
 
    abstract interface
-      !> Lists the keys that the term has in the group of a table, its own or another one.
-      subroutine declare_i(k)
-         import :: key_table_t
-         type(key_table_t), intent(inout) :: k
-      end subroutine declare_i
-
       !> Takes what the term needs of a scene, and of a model whose mesh, regions and boundaries are known, and tells
       !> the model what it adds: actions, ground. Faults: what the scene asks of the term and cannot be.
-      subroutine build_i(self, scene, model, there, fault)
-         import :: scene_term_t, scene_t, model_t, fault_t
+      subroutine build_i(self, tables, scene, model, there, fault)
+         import :: scene_term_t, key_table_t, scene_t, model_t, fault_t
          class(scene_term_t), intent(inout) :: self
+         type(key_table_t), intent(inout) :: tables(:)   !< Every group of the scene that the term's keys stand in.
          type(scene_t), intent(in) :: scene
          type(model_t), intent(inout) :: model
          logical, intent(out) :: there   !< Whether the scene has it.
@@ -35,11 +29,8 @@ module scene_term
       end subroutine build_i
    end interface
 contains
-   !> Name of the group of a scene that is the term's own; empty: its keys stand in others.
-   function group(self) result(name)
-      class(scene_term_t), intent(in) :: self
-      character(:), allocatable :: name
-
-      name = ''
-   end function group
+   !> Lists the keys of the term in the group of a table.
+   subroutine declare(k)
+      type(key_table_t), intent(inout) :: k
+   end subroutine declare
 end module scene_term

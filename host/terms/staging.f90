@@ -13,19 +13,16 @@ module staging
    use key_table, only: key_table_t
    use model_types, only: model_t, gravity_at
    use name_search, only: check_stages
-   use namelists, only: group_t
    use porous_domain, only: model_state_t, copy_state
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, groups_named, item_of
+   use scene_types, only: scene_t, item_of
    use solution, only: solution_t
    use texts, only: whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: staging_t
-
-   character(*), parameter :: IN_GROUP = 'region'
 
    type, extends(scene_term_t) :: staging_t
       real(wp), allocatable :: held_up(:)   !< (unknowns) Forces at the start of what leaves with this stage [kN].
@@ -39,7 +36,7 @@ contains
       type(key_table_t), intent(inout) :: k
       character(LENGTH), allocatable :: stages(:)
 
-      if (k%group%name == IN_GROUP) call take(k, stages)
+      call take(k, stages)
    end subroutine declare
 
    subroutine take(k, stages)
@@ -51,24 +48,21 @@ contains
 
    !> Which elements the stages have. Fault EXIT_GROUP: a stage that nobody defines; EXIT_INPUT: ground that is not
    !> there from the start with a stress of its own, or the flow of a start that lacks it; a stage without ground.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(staging_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       character(LENGTH), allocatable :: stages(:)
       logical :: has(size(scene%regions), size(model%stages))
       integer :: i, s
 
       there = .false.
-      allocate (groups, source=groups_named(scene, IN_GROUP))
-      do i = 1, size(groups)
-         table%group = groups(i)
-         call take(table, stages)
-         call check_stages(model%stages%name, item_of(groups(i)), stages, fault)
+      do i = 1, size(tables)
+         call take(tables(i), stages)
+         call check_stages(model%stages%name, item_of(tables(i)%group), stages, fault)
          if (fault%code /= 0) return
          there = there .or. size(stages) > 0
          has(i, :) = [(acts_in(stages, model%stages(s)%name), s=1, size(has, 2))]

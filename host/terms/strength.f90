@@ -8,11 +8,10 @@ module strength
    use material_point, only: material_t
    use model_types, only: model_t, factor_at
    use name_search, only: defined_name
-   use namelists, only: group_t
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of, groups_named
+   use scene_types, only: scene_t, item_of
    use solution, only: solution_t
    use texts, only: short, LENGTH
    implicit none (type, external)
@@ -22,7 +21,6 @@ module strength
    real(wp), parameter :: START = 0.0_wp       !< Of a run [s].
    real(wp), parameter :: SAME = 1.0e-12_wp    !< Relative difference that is none.
    integer, parameter :: SENTENCE = 600
-   character(*), parameter :: NAME = 'strength'
 
    !> A parameter of a material that follows a history.
    type, extends(scene_item_t) :: change_t
@@ -35,21 +33,14 @@ module strength
       type(change_t), allocatable :: changes(:)
    contains
       procedure, nopass :: declare
-      procedure :: group, build, begin_stage, before_step, remark
+      procedure :: build, begin_stage, before_step, remark
    end type strength_t
 contains
-   function group(self) result(name_of_group)
-      class(strength_t), intent(in) :: self
-      character(:), allocatable :: name_of_group
-
-      name_of_group = NAME
-   end function group
-
    subroutine declare(k)
       type(key_table_t), intent(inout) :: k
       type(change_t) :: nothing
 
-      if (k%group%name == NAME) call take(k, nothing)
+      call take(k, nothing)
    end subroutine declare
 
    subroutine take(k, change)
@@ -66,24 +57,21 @@ contains
    !> Places of what the groups &strength name, and whether the laws allow what their histories ask. Fault EXIT_GROUP: a
    !> material or history that is not defined; EXIT_INPUT: a parameter that cannot change, two histories of one, a
    !> factor that is not 1 at the start, a value that the law refuses.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(strength_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       integer :: i, k
 
-      allocate (groups, source=groups_named(scene, NAME))
-      there = size(groups) > 0
-      allocate (self%changes(size(groups)))
-      do i = 1, size(groups)
+      there = size(tables) > 0
+      allocate (self%changes(size(tables)))
+      do i = 1, size(tables)
          associate (s => self%changes(i))
-            s%scene_item_t = item_of(groups(i))
-            table%group = groups(i)
-            call take(table, s)
+            s%scene_item_t = item_of(tables(i)%group)
+            call take(tables(i), s)
             s%amplitude = defined_name('history', s%amplitude_name, model%amplitudes%name, place_of(s), fault)
             if (fault%code == 0) k = defined_name('material', s%material_name, scene%materials%name, place_of(s), fault)
             if (fault%code /= 0) return

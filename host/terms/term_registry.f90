@@ -9,21 +9,23 @@ module term_registry
    use friction, only: friction_t
    use key_table, only: key_table_t
    use model_types, only: model_t, term_box_t
+   use namelists, only: group_t
    use plane_plates, only: plane_plates_t
    use run_off, only: run_off_t
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
+   use scene_types, only: scene_t, groups_named
    use staging, only: staging_t
    use strength, only: strength_t
    use viscosity, only: viscosity_t
    implicit none (type, external)
    private
-   public :: own_groups, declare_keys, build_terms
+   public :: with_own_groups, declare_keys, build_terms
 
    integer, parameter :: GROUP_LENGTH = 12
 
    !> A place of the list.
    type :: registered_t
+      character(GROUP_LENGTH) :: group   !< That its keys stand in, its own or another one.
       class(scene_term_t), allocatable :: term
    end type registered_t
 contains
@@ -32,38 +34,41 @@ contains
       type(registered_t), allocatable, intent(out) :: list(:)
 
       allocate (list(0))
-      call add(plane_plates_t())
-      call add(strength_t())
-      call add(staging_t())
-      call add(absorbing_t())
-      call add(contact_drainage_t())
-      call add(drained_regions_t())
-      call add(run_off_t())
-      call add(friction_t())
-      call add(buffer_t())
-      call add(viscosity_t())
+      call add('plate', plane_plates_t())
+      call add('strength', strength_t())
+      call add('region', staging_t())
+      call add('absorbing', absorbing_t())
+      call add('contact', contact_drainage_t())
+      call add('region', drained_regions_t())
+      call add('load', run_off_t())
+      call add('contact', friction_t())
+      call add('buffer', buffer_t())
+      call add('region', viscosity_t())
    contains
-      subroutine add(one)
+      subroutine add(group, one)
+         character(*), intent(in) :: group
          class(scene_term_t), intent(in) :: one
          type(registered_t) :: box
 
+         box%group = group
          allocate (box%term, source=one)
          list = [list, box]
       end subroutine add
    end subroutine list_terms
 
-   !> Names of the groups of a scene that belong to terms.
-   function own_groups() result(names)
+   !> Names of groups of a scene, those of others and those that belong to terms alone.
+   function with_own_groups(others) result(names)
+      character(GROUP_LENGTH), intent(in) :: others(:)
       character(GROUP_LENGTH), allocatable :: names(:)
       type(registered_t), allocatable :: list(:)
       integer :: i
 
       call list_terms(list)
-      allocate (names(0))
+      names = others
       do i = 1, size(list)
-         if (list(i)%term%group() /= '') names = [character(GROUP_LENGTH) :: names, list(i)%term%group()]
+         if (all(names /= list(i)%group)) names = [names, list(i)%group]
       end do
-   end function own_groups
+   end function with_own_groups
 
    !> Lists the keys that terms have in the group of a table.
    subroutine declare_keys(k)
@@ -73,7 +78,7 @@ contains
 
       call list_terms(list)
       do i = 1, size(list)
-         call list(i)%term%declare(k)
+         if (list(i)%group == k%group%name) call list(i)%term%declare(k)
       end do
    end subroutine declare_keys
 
@@ -83,19 +88,34 @@ contains
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       type(registered_t), allocatable :: list(:)
-      type(term_box_t) :: box
-      logical :: there
       integer :: i
 
       call list_terms(list)
       allocate (model%terms(0))
       do i = 1, size(list)
-         call list(i)%term%build(scene, model, there, fault)
-         if (fault%code /= 0) return
-         if (.not. there) cycle
-         if (allocated(box%term)) deallocate (box%term)
-         allocate (box%term, source=list(i)%term)
-         model%terms = [model%terms, box]
+         if (fault%code == 0) call build_term(list(i), scene, model, fault)
       end do
    end subroutine build_terms
+
+   subroutine build_term(registered, scene, model, fault)
+      type(registered_t), intent(inout) :: registered
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      type(key_table_t), allocatable :: tables(:)
+      type(term_box_t) :: box
+      logical :: there
+      integer :: i
+
+      allocate (groups, source=groups_named(scene, trim(registered%group)))
+      allocate (tables(size(groups)))
+      do i = 1, size(groups)
+         tables(i)%group = groups(i)
+      end do
+      call registered%term%build(tables, scene, model, there, fault)
+      if (fault%code /= 0 .or. .not. there) return
+      allocate (box%term, source=registered%term)
+      model%terms = [model%terms, box]
+   end subroutine build_term
 end module term_registry

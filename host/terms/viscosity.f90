@@ -7,14 +7,12 @@ module viscosity
    use key_table, only: key_table_t
    use kinds, only: wp
    use model_types, only: model_t
-   use namelists, only: group_t
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, groups_named
+   use scene_types, only: scene_t
    implicit none (type, external)
    private
    public :: viscosity_t
 
-   character(*), parameter :: IN_GROUP = 'region'
    !> Twice the deviator of a rate of strain with engineering shear.
    real(wp), parameter :: DEVIATOR(4, 4) = &
       reshape([4, -2, -2, 0, -2, 4, -2, 0, -2, -2, 4, 0, 0, 0, 0, 3], [4, 4])/3.0_wp
@@ -29,7 +27,7 @@ contains
       type(key_table_t), intent(inout) :: k
       real(wp) :: eta
 
-      if (k%group%name == IN_GROUP) call take(k, eta)
+      call take(k, eta)
    end subroutine declare
 
    subroutine take(k, eta)
@@ -42,22 +40,19 @@ contains
    end subroutine take
 
    !> What the points of regions have against the rate of strain. Raises no fault.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(viscosity_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       real(wp) :: eta
       integer :: i
 
       there = .false.
-      allocate (groups, source=groups_named(scene, IN_GROUP))
-      do i = 1, size(groups)
-         table%group = groups(i)
-         call take(table, eta)
+      do i = 1, size(tables)
+         call take(tables(i), eta)
          if (.not. eta > 0.0_wp) cycle
          there = .true.
          model%domain%regions(i)%against_rate = eta*DEVIATOR

@@ -9,11 +9,10 @@ module ground_spring
    use linear_forces, only: linear_forces_t
    use model_types, only: model_t, action_t
    use name_search, only: mesh_group, check_stages
-   use namelists, only: group_t
    use texts, only: LENGTH
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, groups_named, item_of
+   use scene_types, only: scene_t, item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -31,22 +30,15 @@ module ground_spring
       type(spring_t), allocatable :: springs(:)
    contains
       procedure, nopass :: declare
-      procedure :: group, build, begin_run, before_step
+      procedure :: build, begin_run, before_step
    end type ground_spring_t
 contains
-   function group(self) result(name_of_group)
-      class(ground_spring_t), intent(in) :: self
-      character(:), allocatable :: name_of_group
-
-      name_of_group = NAME
-   end function group
-
    subroutine declare(k)
       type(key_table_t), intent(inout) :: k
       type(spring_t) :: nothing
       character(LENGTH) :: boundary
 
-      if (k%group%name == NAME) call take(k, nothing, boundary)
+      call take(k, nothing, boundary)
    end subroutine declare
 
    subroutine take(k, spring, boundary)
@@ -62,26 +54,23 @@ contains
    end subroutine take
 
    !> Fault EXIT_GROUP: a group or stage that is not defined.
-   subroutine build(self, scene, model, there, fault)
+   subroutine build(self, tables, scene, model, there, fault)
       class(ground_spring_t), intent(inout) :: self
+      type(key_table_t), intent(inout) :: tables(:)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
       character(LENGTH) :: boundary
       integer :: i
 
-      allocate (groups, source=groups_named(scene, NAME))
-      there = size(groups) > 0
-      allocate (self%springs(size(groups)))
-      do i = 1, size(groups)
+      there = size(tables) > 0
+      allocate (self%springs(size(tables)))
+      do i = 1, size(tables)
          associate (spring => self%springs(i))
-            spring%scene_item_t = item_of(groups(i))
+            spring%scene_item_t = item_of(tables(i)%group)
             spring%what = '&'//NAME
-            table%group = groups(i)
-            call take(table, spring, boundary)
+            call take(tables(i), spring, boundary)
             spring%group = mesh_group(model%domain%mesh, boundary, place_of(spring), fault)
             call check_stages(model%stages%name, spring%scene_item_t, spring%stages, fault)
             if (fault%code /= 0) return
