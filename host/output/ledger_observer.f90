@@ -25,7 +25,7 @@ module ledger_observer
    private
    public :: ledger_observer_t
 
-   character(*), parameter :: COLUMNS = 'time,dt,stage,iterations,'// &
+   character(*), parameter :: COLUMNS = 'time,dt,stage,iterations,cuts,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,friction,imbalance,'// &
       'outflow,outflow_air,localised,step_error,'
@@ -167,19 +167,20 @@ contains
       type(fault_t), intent(inout) :: fault
 
       self%ledger%dissipated = self%ledger%dissipated + run%dissipated
-      if (is_open(self%table)) call write_ledger(self%table, run%state%time, done, self%indicators, self%ledger, fault)
+      if (is_open(self%table)) call write_ledger(self%table, run, done, self%indicators, self%ledger, fault)
    end subroutine taken_over
 
-   subroutine write_ledger(table, time, done, indicators, ledger, fault)
+   subroutine write_ledger(table, run, done, indicators, ledger, fault)
       type(csv_t), intent(inout) :: table
-      real(wp), intent(in) :: time, indicators(:)
+      type(run_t), intent(in) :: run
       type(accepted_step_t), intent(in) :: done
+      real(wp), intent(in) :: indicators(:)
       type(ledger_t), intent(in) :: ledger
       type(fault_t), intent(inout) :: fault
 
       associate (log => done%log)
-         write (table%row, '(2(es24.16e3,","),i0,",",i0,",",*(es14.6e3,:,","))') time, done%scheme%dt, &
-            done%stage, log%iterations, log%error, log%first_error, log%reduction, log%correction, &
+         write (table%row, '(2(es24.16e3,","),3(i0,","),*(es14.6e3,:,","))') run%state%time, done%scheme%dt, &
+            done%stage, log%iterations, run%cuts, log%error, log%first_error, log%reduction, log%correction, &
             real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, ledger%gravity, &
             ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%dissipated, imbalance(ledger), &
             ledger%outflow, ledger%outflow_air, done%localised, done%error, indicators

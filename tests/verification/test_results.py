@@ -164,18 +164,25 @@ def test_a_night_goes_on_after_an_interruption(monkeypatch, capsys):
     check("another core makes everything again", "first.py" in made, made)
 
 
-def test_a_row_of_a_hard_case_of_the_host_counts_iterations():
+def test_a_row_of_a_hard_case_of_the_host_counts_iterations_and_cuts():
     # The run says in its stage lines how many systems it solved; no step of a linear column is tried twice, so that the
-    # ledger has all of them. Modules of a study have the names of others: they run in a process of their own.
+    # ledger has all of them; a strain of 1.2 in one step is cut once. Modules of a study have the names of others: they
+    # run in a process of their own.
     study = root / "verification/studies/hard_cases"
     script = ("import pathlib, sys; sys.path.insert(0, sys.argv[1]); import host_cases, host_runs, host_scenes\n"
               "case = host_cases.HostCase('c', 'g', 'h', 'none', 1, lambda s: "
               "{'': host_scenes.column(s, 1e-10, 'linear', steps=3)}, lambda r: 0)\n"
               "row = host_runs.evaluate(case, host_runs.SETTINGS[0], pathlib.Path(sys.argv[2]))\n"
-              "print(row.finished, row.cuts, row.iterations, row.runs[''].told)")
+              "cell = (\"&scene name='s' fields='u' / &mesh r=0,1 r_cells=1 z=0,1 z_cells=1 /\""
+              "\"&elastic name='m' young=1e4 poisson=0 / &region material='m' rho_s=2 void_ratio=0 /\""
+              "\"&stage name='q' analysis='static' duration=1 dt=1 / &fix group='bottom' field='u_z' /\""
+              "\"&fix group='top' field='u_z' value=1.2 history='h' / &history name='h' times=0,1 values=0,1 /\")\n"
+              "told = host_runs.run(cell, pathlib.Path(sys.argv[2]) / 'cut')\n"
+              "print(row.finished, row.cuts, told.cuts, row.iterations, row.runs[''].told)")
     done = subprocess.run([sys.executable, "-c", script, str(study), str(work / "counted")], capture_output=True,
                           text=True, timeout=60)
-    ended, cuts, iterations, told = (done.stdout.split(" ", 3) + 4*[""])[:4]
-    check("the run comes to its end without a cut", (ended, cuts) == ("True", "0"), done.stdout + done.stderr)
+    ended, cuts, cut, iterations, told = (done.stdout.split(" ", 4) + 5*[""])[:5]
+    check("the run comes to its end without a cut, the other with one", (ended, cuts, cut) == ("True", "0", "1"),
+          done.stdout + done.stderr)
     check("a row of the host has the iterations of its run",
           iterations.isdigit() and int(iterations) >= 3 and f"{iterations} linear solves and" in told, done.stdout)
