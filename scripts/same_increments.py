@@ -83,8 +83,10 @@ def main():
     given = words.parse_args()
     if given.work == "record":
         rows = list(updates(given.paths))
-        np.savez_compressed(given.file, code=[r["code"] for r in rows], state=[r["state"] for r in rows],
-                            sizes=[r["tangent"].size for r in rows], tangent=np.concatenate([r["tangent"] for r in rows]))
+        with open(given.file, "wb") as file:   # a name would get an ending that `compare` does not know
+            np.savez_compressed(file, code=[r["code"] for r in rows], state=[r["state"] for r in rows],
+                                sizes=[r["tangent"].size for r in rows],
+                                tangent=np.concatenate([r["tangent"] for r in rows]))
         print(f"{len(rows)} increments, {sum(r['code'] != 0 for r in rows)} of them refused: {given.file}")
         return 0
     kept = np.load(given.file)
