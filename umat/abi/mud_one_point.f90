@@ -17,7 +17,7 @@ module mud_one_point
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: mud_init, mud_update, mud_trace_increment
+   public :: c_init, c_update, c_trace_increment
 
    !> struct mud_blocks of mud.h.
    type, bind(c) :: blocks_t
@@ -34,7 +34,7 @@ contains
    !> Begins a point, as kernel_begin: tension positive, stress and suction in the unit of p_atm, void ratio and
    !> saturation [-]. MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, or the code of kernel_begin; on an error nothing but text is
    !> written. Text of a start that raises a doubt is a warning.
-   integer(c_int) function mud_init(storage, stress, suction, void_ratio, saturation, statev, n_statev, text, len) &
+   integer(c_int) function c_init(storage, stress, suction, void_ratio, saturation, statev, n_statev, text, len) &
       bind(c, name='mud_init')
       type(c_ptr), value :: storage, stress, statev, text
       integer(c_int), value :: n_statev, len
@@ -57,19 +57,19 @@ contains
       else
          report = failed_report(status)
       end if
-      mud_init = report%status
+      c_init = report%status
       sentence = report_text(report)
-      if (mud_init == MUD_OK) then
+      if (c_init == MUD_OK) then
          doubt = findloc(doubts_on_start(material%par, given, statev_in), .true., dim=1)
          if (doubt > 0) sentence = 'warning: '//advice_on_start(material%par, given, statev_in, doubt)
          call remark_on_begun(material%par, given, statev_in, place_t('mud_init'))
       end if
       call put(sentence, text, len)
-   end function mud_init
+   end function c_init
 
    !> One increment as host_increment has it, see mud.h: tension positive, engineering shear, stress in the unit of
    !> p_atm. Returns the status; on any failure only the report is written.
-   integer(c_int) function mud_update(storage, stress0, statev0, n_statev, dstrain, suction, tangent, stress1, &
+   integer(c_int) function c_update(storage, stress0, statev0, n_statev, dstrain, suction, tangent, stress1, &
            statev1, blocks, report_out) bind(c, name='mud_update')
       type(c_ptr), value :: storage, stress0, statev0, dstrain, stress1, statev1, blocks, report_out
       integer(c_int), value :: n_statev, tangent
@@ -94,12 +94,12 @@ contains
          report = failed_report(status)
       end if
       call give_report(report, report_out)
-      mud_update = report%status
-   end function mud_update
+      c_update = report%status
+   end function c_update
 
    !> Runs mud_update and reports every substep that it tries; see mud.h. Its rows have the stress tension positive.
    !> MUD_BAD_OPTION for first < 1, n_rows < 0 and slopes of the present state, else the status of the update.
-   integer(c_int) function mud_trace_increment(storage, stress0, statev0, n_statev, dstrain, suction, tangent, first, &
+   integer(c_int) function c_trace_increment(storage, stress0, statev0, n_statev, dstrain, suction, tangent, first, &
            rows, n_rows, attempts, report_out) bind(c, name='mud_trace_increment')
       type(c_ptr), value :: storage, stress0, statev0, dstrain, rows, attempts, report_out
       integer(c_int), value :: n_statev, tangent, first, n_rows
@@ -133,8 +133,8 @@ contains
          attempts_to = trace%attempts
       end if
       call give_report(report, report_out)
-      mud_trace_increment = report%status
-   end function mud_trace_increment
+      c_trace_increment = report%status
+   end function c_trace_increment
 
    !> Finds the material, state and strain of an increment, or why it cannot begin: MUD_NULL_ARGUMENT, MUD_BAD_OPTION,
    !> MUD_NOT_PREPARED, MUD_BAD_NSTATV. Where slopes of the present state are asked for a NULL strain is none.
