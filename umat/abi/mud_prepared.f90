@@ -3,7 +3,7 @@
 module mud_prepared
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_kernel, only: failed_report
+   use mud_kernel, only: report_t, failed_report
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
@@ -14,7 +14,7 @@ module mud_prepared
    use mud_to_host, only: put
    implicit none (type, external)
    private
-   public :: prepared_t, find_prepared, find_materials, c_prepared_size, c_prepared_statev, c_prepare
+   public :: prepared_t, find_prepared, find_materials, c_prepared_size, c_prepared_statev, c_prepare, c_check_props
 
    !> Contents of the caller's storage. The marks at both ends tell it from storage that was never prepared, was
    !> prepared by a library with other parameters, or was written over at an edge.
@@ -65,8 +65,7 @@ contains
       else
          call c_f_pointer(props, values, [max(n_props, 0)])
          call c_f_pointer(storage, material)
-         call read_params(values, par, status)
-         call check_retention(par%suction%retention_t, status)
+         call read_material(values, par, status)
          if (status%code == MUD_OK) call prepare_retention(par%suction%retention_t)
          material%head = 0
          material%tail = 0
@@ -80,6 +79,37 @@ contains
       c_prepare = status%code
       call put(report_text(failed_report(status)), text, len)
    end function c_prepare
+
+   !> Code of c_prepare for PROPS, and a report of their first fault. MUD_NULL_ARGUMENT, codes of read_material.
+   integer(c_int) function c_check_props(props, n_props, report_out) bind(c, name='mud_check_props')
+      type(c_ptr), value :: props, report_out
+      integer(c_int), value :: n_props
+      real(c_double), pointer, contiguous :: values(:)
+      type(report_t), pointer :: report
+      type(params_t) :: par
+      type(mud_status_t) :: status
+
+      if (c_associated(props)) then
+         call c_f_pointer(props, values, [max(n_props, 0)])
+         call read_material(values, par, status)
+      else
+         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      end if
+      c_check_props = status%code
+      if (.not. c_associated(report_out)) return
+      call c_f_pointer(report_out, report)
+      report = failed_report(status)
+   end function c_check_props
+
+   !> Reads PROPS and checks the retention curves: codes of read_params and check_retention.
+   pure subroutine read_material(values, par, status)
+      real(wp), intent(in), contiguous :: values(:)
+      type(params_t), intent(out) :: par
+      type(mud_status_t), intent(out) :: status
+
+      call read_params(values, par, status)
+      call check_retention(par%suction%retention_t, status)
+   end subroutine read_material
 
    !> The material behind a pointer, or why there is none: codes of find_materials.
    subroutine find_prepared(storage, material, status)

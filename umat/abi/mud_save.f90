@@ -17,7 +17,7 @@ module mud_save
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
-   use mud_to_host, only: put
+   use mud_to_host, only: put, get
    implicit none (type, external)
    private
    public :: c_save_increment, write_increment, PATH_LENGTH
@@ -220,24 +220,4 @@ contains
          if (clean(i:i) == '''') clean(i:i) = ' '
       end do
    end function without_quotes
-
-   !> A C string; `whole` if it fits. What is not printable becomes a blank: a line must stay a line.
-   subroutine get(string, text, whole)
-      type(c_ptr), intent(in) :: string
-      character(*), intent(out) :: text
-      logical, intent(out) :: whole
-      character(kind=c_char), pointer :: letters(:)
-      integer :: i
-
-      text = ''
-      whole = .true.
-      if (.not. c_associated(string)) return
-      call c_f_pointer(string, letters, [len(text) + 1])
-      do i = 1, len(text) + 1
-         if (letters(i) == c_null_char) return
-         if (i > len(text)) exit
-         text(i:i) = merge(letters(i), ' ', iachar(letters(i)) >= 32)
-      end do
-      whole = .false.
-   end subroutine get
 end module mud_save
