@@ -13,7 +13,7 @@ USE = re.compile(r"^\s*use\s+(mud_\w+)", re.MULTILINE | re.IGNORECASE)
 
 HEADER = """\
 MUD {version}: bounding-surface model for unsaturated soil dynamics, the whole library in one file.
-Written by scripts/single_source.py from umat/core and umat/abi: change it there, not here.
+Written by scripts/single_source.py from umat/core, umat/abi and umat/doors: change it there, not here.
 
 It defines the UMAT (symbol umat_), a VUMAT (vumat_), a UDSM (user_mod_ and its companions) and the functions of
 mud.h, but neither its tables of names nor what MFront's behaviours need: those are C and in the library. PROPS,
@@ -41,7 +41,7 @@ def cmake_order():
         names = re.search(rf"^set\({folder}\s+([^)]*)\)", text, re.MULTILINE)[1].split()
         paths = [pathlib.PurePosixPath(folder, name) for name in names]
         files += [root / "umat" / path.with_name(f"mud_{path.name}.f90") for path in paths]
-    return files
+    return files + [root / "umat" / name for name in re.search(r"^set\(doors\s+([^)]*)\)", text, re.MULTILINE)[1].split()]
 
 
 def version():

@@ -10,7 +10,7 @@ import c_header
 import gallery
 
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
-FORTRAN = ("umat/core", "umat/abi", "umat/include", "common", "materials", "drivers/src", "host")
+FORTRAN = ("umat/core", "umat/abi", "umat/doors", "umat/include", "common", "materials", "drivers/src", "host")
 COPIED = (".png", ".svg", ".ipynb")   # beside the page, as they are
 # Headings of the margin for pages that the front page does not list; the last takes what is left.
 REST = {"Evidence: element tests": "verification/material/", "Evidence: finite elements": "verification/host/",

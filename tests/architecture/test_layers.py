@@ -13,6 +13,7 @@ GROUPS = {
     "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/options", "umat/core/rates", "umat/core/integration",
                    "umat/core/tangent", "umat/core"), ()),
     "umat/abi": (("umat/abi",), ("umat/core",)),
+    "umat/doors": (("umat/doors",), ("umat/include",)),
     "umat/tables": (("umat/tables",), ("umat/core",)),
     "umat/include": (("umat/include",), ()),
     "common": (("common",), ()),
@@ -168,6 +169,11 @@ def planted():
          [node, ("solve", "host/solver", "use node, only: x")]),
         ("the core from the host", wrong_layers, [("node", "host/mesh", "use mud_a, only: x"), core],
          [("mud_interface", "umat/include", ""), ("node", "host/mesh", "use mud_interface, only: x")]),
+        ("the library's inside from a door", wrong_layers,
+         [("mud_door", "umat/doors", "use mud_kernel, only: x"), ("mud_kernel", "umat/abi", "")],
+         [("mud_door", "umat/doors", "use mud_interface, only: x"), ("mud_interface", "umat/include", "")]),
+        ("the core from a door", wrong_layers, [("mud_door", "umat/doors", "use mud_a, only: x"), core],
+         [("mud_door", "umat/doors", "use mud_vumat, only: x"), ("mud_vumat", "umat/doors", "")]),
         ("drivers from the host", wrong_layers, [("node", "host/mesh", "use case, only: x"),
                                                  ("case", "drivers/src", "")],
          [("node", "host/mesh", "use point, only: x"), ("point", "materials", "")]),
@@ -212,7 +218,7 @@ def read():
     """{module: (folder, text)} of every source."""
     found = {}
     for file in sources("common/*.f90", "materials/**/*.f90", "drivers/**/*.f90", "host/**/*.f90", "umat/core/**/*.f90",
-                        "umat/abi/**/*.f90", "umat/include/*.f90", "umat/tables/*.f90"):
+                        "umat/abi/**/*.f90", "umat/doors/*.f90", "umat/include/*.f90", "umat/tables/*.f90"):
         found[file.stem] = (str(file.parent.relative_to(root)), file.read_text(encoding="utf-8"))
     return found
 

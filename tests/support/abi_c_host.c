@@ -48,11 +48,13 @@ void abi_status_codes(int codes[18])
    memcpy(codes, all, sizeof all);
 }
 
-void abi_options(int options[16])
+void abi_options(int options[26])
 {
-   const int all[16] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
+   const int all[26] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
                         MUD_ROTATION, MUD_EVOLUTION, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM,
-                        MUD_TANGENT_CONSISTENT, MUD_TANGENT_PRESENT, MUD_TOTAL_STRESS};
+                        MUD_TANGENT_CONSISTENT, MUD_TANGENT_PRESENT, MUD_TOTAL_STRESS, MUD_IN_PIECES, MUD_ON_NOTHING,
+                        MUD_ON_PROPS, MUD_ON_STATEV, MUD_ON_STRESS, MUD_ON_STRAIN, MUD_ON_SUCTION, MUD_ON_VOID_RATIO,
+                        MUD_ON_ARGUMENT, MUD_ON_ROTATION};
    memcpy(options, all, sizeof all);
 }
 

@@ -47,7 +47,7 @@ def near(text):
 
 
 def library_files():
-    return [*root.glob("umat/core/**/*.f90"), *root.glob("umat/abi/*.f90")]
+    return [file for folder in ("core/**", "abi", "doors", "include") for file in root.glob(f"umat/{folder}/*.f90")]
 
 
 def refusal(folder):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """PROPS in mixed units and doubtful starts are told once a process: by umat_, MFront (OpenGeoSys), user_mod_, vumat_,
-mud_init, mud_init_points, and by the updates that lead there."""
+an entry of one's own, mud_init, mud_init_points, and by the updates that lead there."""
 import ctypes
 import os
 import pathlib
@@ -27,7 +27,9 @@ def host(door, p_atm, mean=-100.0, void_ratio=0.0, d_strain=-1e-6):
         stress, state, other = (DOUBLES*20)(mean, mean, mean), (DOUBLES*n_state)(), (DOUBLES*20)()
         new = (DOUBLES*n_state)()
         state[mud.mud_index(2, b"void_ratio")] = void_ratio
-        if door.startswith("mud_"):
+        if door == "my_door":
+            of_an_entry(mud, props, stress, state, strain, other, new)
+        elif door.startswith("mud_"):
             of_c(mud, door, props, stress, void_ratio, state, strain)
         elif door == "umat_":
             factor = DOUBLES(1.0)
@@ -70,6 +72,27 @@ def host(door, p_atm, mean=-100.0, void_ratio=0.0, d_strain=-1e-6):
             assert other[0] == other[0]   # no NaN
 
 
+class Place(ctypes.Structure):
+    """mud_place of mud.h."""
+    _fields_ = [("entry", ctypes.c_char*24), *((name, POINTER) for name in ("step", "increment", "element", "point"))]
+
+
+def of_an_entry(mud, props, stress, state, strain, other, new):
+    """An entry of one's own, written on mud_increment_at: at element 8; then a strain that is too large."""
+    material, place, element = (DOUBLES*mud.mud_prepared_size())(), Place(b"my_door"), INTS(8)
+    place.element = ctypes.addressof(element)
+    assert mud.mud_prepare(props, len(props), material, len(material), None, 0) == 0
+    zero, report = DOUBLES(0.0), (INTS*64)()
+    for size in (1, 4.0/strain[0]):
+        larger = (DOUBLES*6)(*(size*x for x in strain[:6]))
+        code = mud.mud_increment_at(ctypes.byref(place), material, stress, state, len(state), zero, larger, zero, 0,
+                                    other, new, None, report)
+        assert (code == 0) == (size == 1)
+    if os.environ.get("REFUSE"):
+        assert mud.mud_refuse(ctypes.byref(place), report, b". Nothing was computed", other, 6) == code
+        assert (other[0] == other[0]) == (os.environ.get("MUD_NO_PNEWDT") == "keep")
+
+
 def of_c(mud, door, props, stress, void_ratio, state, strain):
     """A start by mud.h, one point or an array of one, and an update of the same kind."""
     from mud import _native
@@ -91,19 +114,19 @@ def of_c(mud, door, props, stress, void_ratio, state, strain):
 plain = {name: value for name, value in os.environ.items() if not name.startswith("MUD_")}
 
 
-def told(*words):
+def told(*words, **more):
     """Lines on standard error of a process that is this host."""
     done = subprocess.run([sys.executable, __file__, *map(str, words)], capture_output=True, text=True,
-                          env={**plain, "MUD_BUILD_DIR": str(build), "PYTHONPATH": str(root / "python")})
+                          env={**plain, "MUD_BUILD_DIR": str(build), "PYTHONPATH": str(root / "python"), **more})
     check(f"{words} ends well", done.returncode == 0, done.stdout + done.stderr)
     return done.stderr.splitlines()
 
 
-DOORS = ("umat_", "MFront", "user_mod_", "vumat_", "mud_init", "mud_init_points")
+DOORS = ("umat_", "MFront", "user_mod_", "vumat_", "my_door", "mud_init", "mud_init_points")
 
 
 def test_warns_once_of_p_atm_in_pa_among_kpa():
-    for door in DOORS[1:4]:
+    for door in DOORS[1:5]:
         lines = told(door, 101325)
         check(f"{door} warns once of p_atm in Pa among kPa", len(lines) == 1 and f"remark of {door} at" in lines[0] and
               "do all PROPS have the unit of stress of p_atm?" in lines[0], lines)
@@ -153,10 +176,22 @@ def test_the_limits_of_a_start_follow_the_unit_of_stress():
 def test_an_update_that_loosens_soil_beyond_the_models_range_is_told():
     # Expansion by 0.3 % from e 2.96 ends at 3.96*exp(0.003) - 1 = 2.972.
     for door, by in (("umat_", "umat_"), ("vumat_", "vumat_"), ("user_mod_", "user_mod_"), ("MFront", "MFront"),
+                     ("my_door", "my_door"),
                      ("mud_init", "mud_update"), ("mud_init_points", "mud_update_points")):
         lines = told(door, 101.325, -4000.0, 2.96, 3e-3)
         check(f"{by} tells that the void ratio is beyond", any(
             f"remark of {by} at" in line and "void ratio has come to 2.97" in line for line in lines), lines)
+
+
+def test_an_entry_of_ones_own_is_heard_once_with_its_place_and_stops_its_host():
+    lines = told("my_door", 101.325, REFUSE="yes")
+    check("the refusal is said once, of two", len(lines) == 2 and lines[0].startswith(
+        "MUD: my_door refused the increment at element 8, status 6: strain increment 11 is 4") and
+        ". Nothing was computed. Its stress is NaN" in lines[0], lines)
+    check("the process counts both at its end", "set to NaN: 2." in lines[1], lines)
+    lines = told("my_door", 101.325, REFUSE="yes", MUD_NO_PNEWDT="keep")
+    check("keep leaves the stress, and says so", len(lines) == 1 and "The old stress is kept" in lines[0], lines)
+    check("without mud_refuse nothing is said", told("my_door", 101.325) == [])
 
 
 if __name__ == '__main__':

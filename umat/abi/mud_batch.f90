@@ -20,7 +20,7 @@ module mud_batch
    use mud_total, only: effective_stress, total_stress
    implicit none (type, external)
    private
-   public :: mud_init_points, mud_update_points, mud_saturation_points
+   public :: c_init_points, c_update_points, c_saturation_points
 
    integer, parameter :: CHUNK = 16   !< Points a thread takes at a time: costs differ from point to point.
    integer, parameter :: BEGIN = 1, UPDATE = 2, RETAIN = 3   !< Tasks, done for every point.
@@ -50,30 +50,30 @@ module mud_batch
 contains
    !> Fills STATEV of points that begin. Tension positive, stress and suction in the unit of p_atm, void ratio [-].
    !> Returns the number of failed points, or a negative code where nothing was done; see run.
-   integer(c_int) function mud_init_points(materials, n_materials, points, summary) bind(c, name='mud_init_points')
+   integer(c_int) function c_init_points(materials, n_materials, points, summary) bind(c, name='mud_init_points')
       type(c_ptr), value :: materials, points, summary
       integer(c_int), value :: n_materials
 
-      mud_init_points = run(BEGIN, materials, n_materials, points, summary)
-   end function mud_init_points
+      c_init_points = run(BEGIN, materials, n_materials, points, summary)
+   end function c_init_points
 
    !> One increment of every point, or the slopes of its present state, as host_increment has it. Returns as
    !> mud_init_points.
-   integer(c_int) function mud_update_points(materials, n_materials, points, summary) bind(c, name='mud_update_points')
+   integer(c_int) function c_update_points(materials, n_materials, points, summary) bind(c, name='mud_update_points')
       type(c_ptr), value :: materials, points, summary
       integer(c_int), value :: n_materials
 
-      mud_update_points = run(UPDATE, materials, n_materials, points, summary)
-   end function mud_update_points
+      c_update_points = run(UPDATE, materials, n_materials, points, summary)
+   end function c_update_points
 
    !> Degree of saturation of every point at another suction, as state_saturation has it. Returns as mud_init_points.
-   integer(c_int) function mud_saturation_points(materials, n_materials, points, summary) &
+   integer(c_int) function c_saturation_points(materials, n_materials, points, summary) &
       bind(c, name='mud_saturation_points')
       type(c_ptr), value :: materials, points, summary
       integer(c_int), value :: n_materials
 
-      mud_saturation_points = run(RETAIN, materials, n_materials, points, summary)
-   end function mud_saturation_points
+      c_saturation_points = run(RETAIN, materials, n_materials, points, summary)
+   end function c_saturation_points
 
    !> A task for every point. MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_NSTATV, MUD_BAD_OPTION (counts, kind of
    !> tangent, numbers of points or materials) before anything is done. A point that fails leaves its own outputs

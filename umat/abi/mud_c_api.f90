@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> The functions of mud.h.
+!> The functions of mud.h. Here they are called c_NAME, for a compiler that meets an interface and a procedure of one
+!> name in one file compares them, and a NULL has no interface.
 module mud_c_api
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
    use mud_kernel, only: report_t, failed_report
@@ -18,9 +19,9 @@ module mud_c_api
    use mud_units, only: bounds_for, convert_props
    implicit none (type, external)
    private
-   public :: mud_abi_version, mud_version, mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, &
-             mud_default_props, mud_convert_props, mud_validate_props, &
-             mud_status_text, mud_message
+   public :: c_abi_version, c_version, c_count, c_index, c_text, c_option, c_bounds, c_bounds_for, &
+             c_default_props, c_convert_props, c_validate_props, &
+             c_status_text, c_message
    public :: ABI_VERSION, VERSION
 
    integer, parameter :: ABI_VERSION = 3
@@ -31,42 +32,42 @@ module mud_c_api
    real(wp), parameter :: SMALLEST_FACTOR = 1.0e-12_wp   !< Between two units of stress [-].
 contains
    !> Version of the C interface, MUD_ABI_VERSION of mud.h.
-   pure integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
-      mud_abi_version = ABI_VERSION
-   end function mud_abi_version
+   pure integer(c_int) function c_abi_version() bind(c, name='mud_abi_version')
+      c_abi_version = ABI_VERSION
+   end function c_abi_version
 
    !> Version of the library as text; always MUD_OK.
-   integer(c_int) function mud_version(text, len) bind(c, name='mud_version')
+   integer(c_int) function c_version(text, len) bind(c, name='mud_version')
       type(c_ptr), value :: text
       integer(c_int), value :: len
 
       call put(VERSION, text, len)
-      mud_version = MUD_OK
-   end function mud_version
+      c_version = MUD_OK
+   end function c_version
 
    !> Number of entries of PROPS or STATEV; MUD_BAD_OPTION for another list.
-   pure integer(c_int) function mud_count(list) bind(c, name='mud_count')
+   pure integer(c_int) function c_count(list) bind(c, name='mud_count')
       integer(c_int), intent(in), value :: list
 
       select case (list)
       case (LIST_PROPS)
-         mud_count = NPROPS
+         c_count = NPROPS
       case (LIST_STATEV)
-         mud_count = NSTATV
+         c_count = NSTATV
       case default
-         mud_count = MUD_BAD_OPTION
+         c_count = MUD_BAD_OPTION
       end select
-   end function mud_count
+   end function c_count
 
    !> Index of a name from 0, case ignored; -1 where there is no such name or list, or no name.
-   integer(c_int) function mud_index(list, name) bind(c, name='mud_index')
+   integer(c_int) function c_index(list, name) bind(c, name='mud_index')
       integer(c_int), value :: list
       type(c_ptr), value :: name
       character(kind=c_char), pointer :: letters(:)
       character(64) :: word
       integer :: i
 
-      mud_index = -1
+      c_index = -1
       if (.not. c_associated(name)) return
       call c_f_pointer(name, letters, [len(word) + 1])
       word = ''
@@ -75,19 +76,19 @@ contains
          if (i > len(word)) return
          word(i:i) = letters(i)
       end do
-      if (list == LIST_PROPS) mud_index = property_index(word) - 1
-      if (list == LIST_STATEV) mud_index = statev_index(word) - 1
-   end function mud_index
+      if (list == LIST_PROPS) c_index = property_index(word) - 1
+      if (list == LIST_STATEV) c_index = statev_index(word) - 1
+   end function c_index
 
    !> A field of an entry, index from 0; MUD_BAD_OPTION for a list, index or field that is unknown. Fields of STATEV
    !> alone are empty for PROPS.
-   integer(c_int) function mud_text(list, index, field, text, len) bind(c, name='mud_text')
+   integer(c_int) function c_text(list, index, field, text, len) bind(c, name='mud_text')
       integer(c_int), value :: list, index, field, len
       type(c_ptr), value :: text
 
-      mud_text = MUD_BAD_OPTION
-      if (index < 0 .or. index >= mud_count(list)) return
-      mud_text = MUD_OK
+      c_text = MUD_BAD_OPTION
+      if (index < 0 .or. index >= c_count(list)) return
+      c_text = MUD_OK
       if (list == LIST_PROPS) then
          associate (entry => PROPERTIES(index + 1))
             select case (field)
@@ -104,7 +105,7 @@ contains
             case (FIELD_INITIAL, FIELD_ROTATION, FIELD_EVOLUTION)
                call put('', text, len)
             case default
-               mud_text = MUD_BAD_OPTION
+               c_text = MUD_BAD_OPTION
             end select
          end associate
       else
@@ -127,20 +128,20 @@ contains
             case (FIELD_EVOLUTION)
                call put(entry%evolution, text, len)
             case default
-               mud_text = MUD_BAD_OPTION
+               c_text = MUD_BAD_OPTION
             end select
          end associate
       end if
-   end function mud_text
+   end function c_text
 
    !> The number-th value, from 0, of a parameter that takes words, and its word. MUD_BAD_OPTION where there is none.
    !> index from 0, value [-].
-   integer(c_int) function mud_option(index, number, value, word, len) bind(c, name='mud_option')
+   integer(c_int) function c_option(index, number, value, word, len) bind(c, name='mud_option')
       integer(c_int), value :: index, number, len
       type(c_ptr), value :: value, word
       integer :: i, found
 
-      mud_option = MUD_BAD_OPTION
+      c_option = MUD_BAD_OPTION
       found = -1
       do i = 1, size(OPTIONS)
          if (OPTIONS(i)%property /= index + 1) cycle
@@ -148,51 +149,51 @@ contains
          if (found /= number) cycle
          call put_real(real(OPTIONS(i)%value, wp), value)
          call put(OPTIONS(i)%word, word, len)
-         mud_option = MUD_OK
+         c_option = MUD_OK
          return
       end do
-   end function mud_option
+   end function c_option
 
    !> Bounds and default of a parameter where p_atm is an atmosphere in kPa; state variables have none. index from 0;
    !> units as MUD_UNIT says, stresses in kPa. MUD_BAD_OPTION for state variables and an unknown index.
-   integer(c_int) function mud_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')
+   integer(c_int) function c_bounds(list, index, lower, upper, preset) bind(c, name='mud_bounds')
       integer(c_int), value :: list, index
       type(c_ptr), value :: lower, upper, preset
 
-      mud_bounds = MUD_BAD_OPTION
+      c_bounds = MUD_BAD_OPTION
       if (list /= LIST_PROPS .or. index < 0 .or. index >= NPROPS) return
       call put_real(PROPERTIES(index + 1)%lower, lower)
       call put_real(PROPERTIES(index + 1)%upper, upper)
       call put_real(PROPERTIES(index + 1)%default, preset)
-      mud_bounds = MUD_OK
-   end function mud_bounds
+      c_bounds = MUD_OK
+   end function c_bounds
 
    !> Bounds and preset of an entry of PROPS in the unit of stress of a set of PROPS. MUD_NULL_ARGUMENT without props,
    !> MUD_BAD_NPROPS, MUD_BAD_OPTION for an unknown index; PROPS are not checked.
-   integer(c_int) function mud_bounds_for(props, n_props, index, lower, upper, preset) bind(c, name='mud_bounds_for')
+   integer(c_int) function c_bounds_for(props, n_props, index, lower, upper, preset) bind(c, name='mud_bounds_for')
       type(c_ptr), value :: props, lower, upper, preset
       integer(c_int), value :: n_props, index
       real(c_double), pointer, contiguous :: values(:)
       real(wp) :: low(NPROPS), high(NPROPS), default(NPROPS)
 
-      mud_bounds_for = MUD_NULL_ARGUMENT
+      c_bounds_for = MUD_NULL_ARGUMENT
       if (.not. c_associated(props)) return
-      mud_bounds_for = MUD_BAD_NPROPS
+      c_bounds_for = MUD_BAD_NPROPS
       if (.not. is_length(n_props)) return
-      mud_bounds_for = MUD_BAD_OPTION
+      c_bounds_for = MUD_BAD_OPTION
       if (index < 0 .or. index >= NPROPS) return
       call c_f_pointer(props, values, [n_props])
       call bounds_for(completed(values), low, high, default)
       call put_real(low(index + 1), lower)
       call put_real(high(index + 1), upper)
       call put_real(default(index + 1), preset)
-      mud_bounds_for = MUD_OK
-   end function mud_bounds_for
+      c_bounds_for = MUD_OK
+   end function c_bounds_for
 
    !> Converts the PROPS of a material to another unit of stress, of which `factor` make one of the present. On an error
    !> PROPS are untouched: MUD_NULL_ARGUMENT, MUD_BAD_INPUT for a factor outside 1e-12 to 1e12, else what read_params
    !> says of the PROPS before or after.
-   integer(c_int) function mud_convert_props(props, n_props, factor) bind(c, name='mud_convert_props')
+   integer(c_int) function c_convert_props(props, n_props, factor) bind(c, name='mud_convert_props')
       type(c_ptr), value :: props
       integer(c_int), value :: n_props
       real(c_double), value :: factor
@@ -201,9 +202,9 @@ contains
       type(params_t) :: par
       type(mud_status_t) :: status
 
-      mud_convert_props = MUD_NULL_ARGUMENT
+      c_convert_props = MUD_NULL_ARGUMENT
       if (.not. c_associated(props)) return
-      mud_convert_props = MUD_BAD_INPUT
+      c_convert_props = MUD_BAD_INPUT
       if (.not. is_finite(factor)) return
       if (factor < SMALLEST_FACTOR .or. factor > 1.0_wp/SMALLEST_FACTOR) return
       call c_f_pointer(props, values, [max(n_props, 0)])
@@ -213,29 +214,29 @@ contains
          call read_params(converted, par, status)
          if (status%code == MUD_OK) values = converted(:size(values))
       end if
-      mud_convert_props = status%code
-   end function mud_convert_props
+      c_convert_props = status%code
+   end function c_convert_props
 
    !> Every default of the registry, stresses in kPa. MUD_NULL_ARGUMENT, or MUD_BAD_NPROPS for a wrong number.
-   integer(c_int) function mud_default_props(props, n_props) bind(c, name='mud_default_props')
+   integer(c_int) function c_default_props(props, n_props) bind(c, name='mud_default_props')
       type(c_ptr), value :: props
       integer(c_int), value :: n_props
       real(c_double), pointer, contiguous :: values(:)
       real(wp) :: full(NPROPS)
 
-      mud_default_props = MUD_NULL_ARGUMENT
+      c_default_props = MUD_NULL_ARGUMENT
       if (.not. c_associated(props)) return
-      mud_default_props = MUD_BAD_NPROPS
+      c_default_props = MUD_BAD_NPROPS
       if (.not. is_length(n_props)) return
       call c_f_pointer(props, values, [n_props])
       full = default_props()
       values = full(:n_props)
-      mud_default_props = MUD_OK
-   end function mud_default_props
+      c_default_props = MUD_OK
+   end function c_default_props
 
    !> Status of PROPS in the unit of p_atm and a sentence: the first fault, 'no error', or a warning where units seem
    !> mixed. Codes of read_params and check_retention, MUD_NULL_ARGUMENT.
-   integer(c_int) function mud_validate_props(props, n_props, text, len) bind(c, name='mud_validate_props')
+   integer(c_int) function c_validate_props(props, n_props, text, len) bind(c, name='mud_validate_props')
       type(c_ptr), value :: props, text
       integer(c_int), value :: n_props, len
       real(c_double), pointer, contiguous :: values(:)
@@ -251,32 +252,32 @@ contains
       else
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       end if
-      mud_validate_props = status%code
+      c_validate_props = status%code
       advice = ''
       if (status%code == MUD_OK) advice = advice_on(completed(values))
       if (advice == '') advice = report_text(failed_report(status))
       call put(advice, text, len)
-   end function mud_validate_props
+   end function c_validate_props
 
    !> A sentence for a code, also for one that is unknown; always MUD_OK.
-   integer(c_int) function mud_status_text(code, text, len) bind(c, name='mud_status_text')
+   integer(c_int) function c_status_text(code, text, len) bind(c, name='mud_status_text')
       integer(c_int), value :: code, len
       type(c_ptr), value :: text
 
       call put(status_text(code), text, len)
-      mud_status_text = MUD_OK
-   end function mud_status_text
+      c_status_text = MUD_OK
+   end function c_status_text
 
    !> A sentence for a report; MUD_NULL_ARGUMENT without one.
-   integer(c_int) function mud_message(report_in, text, len) bind(c, name='mud_message')
+   integer(c_int) function c_message(report_in, text, len) bind(c, name='mud_message')
       type(c_ptr), value :: report_in, text
       integer(c_int), value :: len
       type(report_t), pointer :: report
 
-      mud_message = MUD_NULL_ARGUMENT
+      c_message = MUD_NULL_ARGUMENT
       if (.not. c_associated(report_in)) return
       call c_f_pointer(report_in, report)
       call put(report_text(report), text, len)
-      mud_message = MUD_OK
-   end function mud_message
+      c_message = MUD_OK
+   end function c_message
 end module mud_c_api

@@ -12,7 +12,7 @@ module mud_host_increment
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: host_increment, suction_change, kind_of, is_present, is_total
+   public :: host_increment, never_began, suction_change, kind_of, is_present, is_total
 
    integer, parameter :: TANGENT_PRESENT = 4   !< MUD_TANGENT_PRESENT of mud.h.
    integer, parameter :: WITH_TOTAL_STRESS = 16    !< MUD_TOTAL_STRESS of mud.h.

@@ -6,7 +6,7 @@ module mud_kernel
    use mud_bounding, only: limited
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
-   use mud_params, only: params_t, options_t, read_params
+   use mud_params, only: params_t, options_t
    use mud_point, only: update_point, LAST_RATE => TANGENT_CONTINUUM
    use mud_blocks, only: blocks_t
    use mud_start, only: initial_state
@@ -21,7 +21,7 @@ module mud_kernel
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: report_t, output_t, kernel_init, kernel_begin, kernel_point, kernel_tangent, &
+   public :: report_t, output_t, kernel_begin, kernel_point, kernel_tangent, &
       rotate_statev, failed_report, copy_statev, TANGENT_FROM_PROPS, ON_STRESS_RATIO
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
@@ -54,26 +54,7 @@ module mud_kernel
    end type output_t
 contains
    !> Initialises a point. stress and statev are written on success only. Tension positive, stress and suction in the
-   !> unit of p_atm, void ratio [-]; statev(:) as in kernel_begin. Codes of read_params, else those of kernel_begin.
-   !> props(:) as read_params takes them.
-   pure subroutine kernel_init(props, stress, suction, void_ratio, statev, report)
-      real(wp), intent(in), contiguous :: props(:)
-      real(wp), intent(inout) :: stress(6)     !< Lifted to p_min if its mean is below [kPa].
-      real(wp), intent(in) :: suction, void_ratio
-      real(wp), intent(inout) :: statev(:)
-      type(report_t), intent(out) :: report
-      type(params_t) :: par
-      type(mud_status_t) :: status
-
-      call read_params(props, par, status)
-      if (status%code == MUD_OK) then
-         call kernel_begin(par, stress, suction, void_ratio, statev, report)
-      else
-         report = failed_report(status)
-      end if
-   end subroutine kernel_init
-
-   !> Initialises a point of checked parameters. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV;
+   !> unit of p_atm, void ratio [-]. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV;
    !> MUD_BAD_STATE for a saturation without hysteresis; otherwise the codes of initialise.
    pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report, saturation)
       type(params_t), intent(in) :: par
@@ -81,16 +62,14 @@ contains
       real(wp), intent(in) :: suction, void_ratio   !< Void ratio 0: e_0.
       real(wp), intent(inout) :: statev(:)
       type(report_t), intent(out) :: report
-      real(wp), intent(in), optional :: saturation   !< 0: on the main drying curve [-].
+      real(wp), intent(in) :: saturation   !< 0: on the main drying curve [-].
       type(state_t) :: state
       type(mud_status_t) :: status
-      real(wp) :: packed(NSTATV), preset
+      real(wp) :: packed(NSTATV)
 
-      preset = 0.0_wp
-      if (present(saturation)) preset = saturation
       if (size(statev) < statev_size(par%options_t)) status = wrong_nstatv(size(statev), par%options_t)
-      call check_preset(par%suction%retention_t, preset, status)
-      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, preset, state, packed, status)
+      call check_preset(par%suction%retention_t, saturation, status)
+      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, saturation, state, packed, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)

@@ -3,7 +3,7 @@
 module mud_prepared
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
-   use mud_kernel, only: failed_report
+   use mud_kernel, only: report_t, failed_report
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
@@ -14,7 +14,7 @@ module mud_prepared
    use mud_to_host, only: put
    implicit none (type, external)
    private
-   public :: prepared_t, find_prepared, find_materials, mud_prepared_size, mud_prepared_statev, mud_prepare
+   public :: prepared_t, find_prepared, find_materials, c_prepared_size, c_prepared_statev, c_prepare, c_check_props
 
    !> Contents of the caller's storage. The marks at both ends tell it from storage that was never prepared, was
    !> prepared by a library with other parameters, or was written over at an edge.
@@ -29,28 +29,28 @@ module mud_prepared
    real(wp), parameter :: BITS_OF_A_DOUBLE = storage_size(1.0_wp)
 contains
    !> Number of doubles that the storage of a prepared material takes.
-   pure integer(c_int) function mud_prepared_size() bind(c, name='mud_prepared_size')
+   pure integer(c_int) function c_prepared_size() bind(c, name='mud_prepared_size')
       type(prepared_t) :: material
 
-      mud_prepared_size = ceiling(storage_size(material)/BITS_OF_A_DOUBLE, c_int)
-   end function mud_prepared_size
+      c_prepared_size = ceiling(storage_size(material)/BITS_OF_A_DOUBLE, c_int)
+   end function c_prepared_size
 
    !> Numbers of STATEV that a point of a prepared material has: those of hysteresis only with it. MUD_NULL_ARGUMENT,
    !> MUD_NOT_PREPARED.
-   integer(c_int) function mud_prepared_statev(storage) bind(c, name='mud_prepared_statev')
+   integer(c_int) function c_prepared_statev(storage) bind(c, name='mud_prepared_statev')
       type(c_ptr), value :: storage
       type(prepared_t), pointer :: material
       type(mud_status_t) :: status
 
       call find_prepared(storage, material, status)
-      mud_prepared_statev = status%code
-      if (status%code == MUD_OK) mud_prepared_statev = statev_size(material%par%options_t)
-   end function mud_prepared_statev
+      c_prepared_statev = status%code
+      if (status%code == MUD_OK) c_prepared_statev = statev_size(material%par%options_t)
+   end function c_prepared_statev
 
    !> Checks PROPS and writes the material; on an error the storage is no prepared material. MUD_NULL_ARGUMENT,
    !> MUD_NOT_PREPARED where size_ (doubles) is too small, else the codes of read_params and check_retention; text says
    !> which. Stresses in the unit of p_atm.
-   integer(c_int) function mud_prepare(props, n_props, storage, size_, text, len) bind(c, name='mud_prepare')
+   integer(c_int) function c_prepare(props, n_props, storage, size_, text, len) bind(c, name='mud_prepare')
       type(c_ptr), value :: props, storage, text
       integer(c_int), value :: n_props, size_, len
       real(c_double), pointer, contiguous :: values(:)
@@ -60,13 +60,12 @@ contains
 
       if (.not. (c_associated(props) .and. c_associated(storage))) then
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-      else if (size_ < mud_prepared_size()) then
-         status = fail(MUD_NOT_PREPARED, ON_ARGUMENT, 0, real(size_, wp), real(mud_prepared_size(), wp), huge(1.0_wp))
+      else if (size_ < c_prepared_size()) then
+         status = fail(MUD_NOT_PREPARED, ON_ARGUMENT, 0, real(size_, wp), real(c_prepared_size(), wp), huge(1.0_wp))
       else
          call c_f_pointer(props, values, [max(n_props, 0)])
          call c_f_pointer(storage, material)
-         call read_params(values, par, status)
-         call check_retention(par%suction%retention_t, status)
+         call read_material(values, par, status)
          if (status%code == MUD_OK) call prepare_retention(par%suction%retention_t)
          material%head = 0
          material%tail = 0
@@ -77,9 +76,40 @@ contains
             material%tail = not(mark_of())
          end if
       end if
-      mud_prepare = status%code
+      c_prepare = status%code
       call put(report_text(failed_report(status)), text, len)
-   end function mud_prepare
+   end function c_prepare
+
+   !> Code of c_prepare for PROPS, and a report of their first fault. MUD_NULL_ARGUMENT, codes of read_material.
+   integer(c_int) function c_check_props(props, n_props, report_out) bind(c, name='mud_check_props')
+      type(c_ptr), value :: props, report_out
+      integer(c_int), value :: n_props
+      real(c_double), pointer, contiguous :: values(:)
+      type(report_t), pointer :: report
+      type(params_t) :: par
+      type(mud_status_t) :: status
+
+      if (c_associated(props)) then
+         call c_f_pointer(props, values, [max(n_props, 0)])
+         call read_material(values, par, status)
+      else
+         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      end if
+      c_check_props = status%code
+      if (.not. c_associated(report_out)) return
+      call c_f_pointer(report_out, report)
+      report = failed_report(status)
+   end function c_check_props
+
+   !> Reads PROPS and checks the retention curves: codes of read_params and check_retention.
+   pure subroutine read_material(values, par, status)
+      real(wp), intent(in), contiguous :: values(:)
+      type(params_t), intent(out) :: par
+      type(mud_status_t), intent(out) :: status
+
+      call read_params(values, par, status)
+      call check_retention(par%suction%retention_t, status)
+   end subroutine read_material
 
    !> The material behind a pointer, or why there is none: codes of find_materials.
    subroutine find_prepared(storage, material, status)
@@ -115,6 +145,6 @@ contains
 
    !> Mark of this library in a storage; a library with another number of parameters has another one.
    pure integer(int64) function mark_of()
-      mark_of = MARK + int(mud_prepared_size(), int64)
+      mark_of = MARK + int(c_prepared_size(), int64)
    end function mark_of
 end module mud_prepared

@@ -1,9 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> Reports a refusal of umat_: a message on standard error, once a process for each distinct failure, a request for a
-!> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS of NaN that stops the solver. user_mod_ and vumat_
-!> say their sentences here too.
+!> cut in PNEWDT or, where the host gives no PNEWDT, a STRESS of NaN that stops the solver. mud_refuse of mud.h does so
+!> for entries written on that file.
 module mud_refusals
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_null_ptr, c_associated, c_f_pointer
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_null_ptr, c_associated, &
+      c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_advice, only: advice_on, doubts_on_start, advice_on_start, is_too_loose, advice_on_void_ratio, &
       ADVICE_LENGTH, START_DOUBTS, TOO_LOOSE
@@ -18,15 +19,24 @@ module mud_refusals
    use mud_save, only: write_increment, PATH_LENGTH
    use mud_status, only: MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
+   use mud_to_host, only: get
    implicit none (type, external)
    private
-   public :: KEEP_VARIABLE, place_t, refuse, say_refusal, remark_on_suction, remark_on_props, remark_on_start, &
+   public :: place_t, place_at, c_refuse, refuse, remark_on_suction, remark_on_props, remark_on_start, &
              remark_on_begun, remark_on_end, remark_on_void_ratio, remark_on_late_start, remark_on_rotation, &
              remark_on_green_strain, save_if_asked
 
+   integer, parameter :: DOOR_LENGTH = 23
+
+   !> struct mud_place of mud.h.
+   type, bind(c) :: given_place_t
+      character(kind=c_char) :: entry(DOOR_LENGTH + 1)
+      type(c_ptr) :: step, increment, element, point
+   end type given_place_t
+
    !> KSTEP, KINC, NOEL and NPT of the host; each may be NULL.
    type :: place_t
-      character(17) :: door = 'umat_'   !< Name of the library's entry that was called.
+      character(DOOR_LENGTH) :: door = 'umat_'   !< Name of the entry that was called.
       type(c_ptr) :: step = c_null_ptr, increment = c_null_ptr, element = c_null_ptr, point = c_null_ptr
    end type place_t
 
@@ -58,9 +68,7 @@ contains
       if (c_associated(pnewdt)) then
          call ask_for_a_cut(report, pnewdt)
       else if (c_associated(stress)) then
-         stops = .not. environment_is(KEEP_VARIABLE, 'keep')
-         if (stops) call set_to_nan(stress, integer_at(ntens))
-         if (stops) call report_at_exit()
+         call stop_host(stress, integer_at(ntens), stops)
       end if
       if (c_associated(scd)) then
          call c_f_pointer(scd, code)
@@ -77,6 +85,47 @@ contains
       end if
    end subroutine refuse
 
+   !> Place of an increment in the words of mud.h; NULL: an entry without a name.
+   type(place_t) function place_at(pointer) result(place)
+      type(c_ptr), intent(in) :: pointer
+      type(given_place_t), pointer :: given
+      integer :: i
+
+      place%door = 'mud_increment_at'
+      if (.not. c_associated(pointer)) return
+      call c_f_pointer(pointer, given)
+      place%door = ''
+      do i = 1, DOOR_LENGTH
+         if (given%entry(i) == c_null_char) exit
+         place%door(i:i) = given%entry(i)
+      end do
+      place%step = given%step
+      place%increment = given%increment
+      place%element = given%element
+      place%point = given%point
+   end function place_at
+
+   !> See mud.h. Returns the status of the report, MUD_NULL_ARGUMENT without one.
+   integer(c_int) function c_refuse(place, report_in, consequence, stress, n) bind(c, name='mud_refuse')
+      type(c_ptr), value :: place, report_in, consequence, stress
+      integer(c_int), value :: n
+      type(report_t), pointer :: report
+      character(MESSAGE_LENGTH) :: text
+      logical :: whole, stops
+
+      c_refuse = MUD_NULL_ARGUMENT
+      if (.not. c_associated(report_in)) return
+      call c_f_pointer(report_in, report)
+      c_refuse = report%status
+      call get(consequence, text, whole)
+      if (c_associated(stress) .and. n > 0) then
+         call stop_host(stress, n, stops)
+         text = trim(text)//merge('. Its stress is NaN, to stop the analysis                          ', &
+                                  '. The old stress is kept: what the host computes from here is wrong', stops)
+      end if
+      call say_refusal(report, place_at(place), trim(text))
+   end function c_refuse
+
    !> PNEWDT is written only to ask for a cut, and never raised: another point may have asked for a smaller one. Hosts
    !> that enter with 0 or less, or with nothing, have no request yet.
    subroutine ask_for_a_cut(report, pnewdt)
@@ -91,15 +140,20 @@ contains
       factor = report%pnewdt
    end subroutine ask_for_a_cut
 
-   !> Sets the stress to NaN: without PNEWDT a host would continue with the old stress, and a NaN stops it.
-   subroutine set_to_nan(stress, ntens)
+   !> Sets the stress to NaN: without PNEWDT a host would continue with the old stress, and a NaN stops it. The stress
+   !> stays where the user wants that.
+   subroutine stop_host(stress, ntens, stops)
       type(c_ptr), intent(in) :: stress
       integer, intent(in) :: ntens   !< NTENS as the host gives it; it may be what is wrong.
+      logical, intent(out) :: stops
       real(c_double), pointer, contiguous :: components(:)
 
+      stops = .not. environment_is(KEEP_VARIABLE, 'keep')
+      if (.not. stops) return
       call c_f_pointer(stress, components, [min(max(ntens, 1), 6)])
       components = transfer(int(z'7FF8000000000000', int64), 1.0_wp)
-   end subroutine set_to_nan
+      call report_at_exit()
+   end subroutine stop_host
 
    pure integer function kind_of(report)
       type(report_t), intent(in) :: report

@@ -14,12 +14,12 @@ module mud_retention_point
    use mud_to_host, only: put_real
    implicit none (type, external)
    private
-   public :: mud_saturation, state_saturation
+   public :: c_saturation, state_saturation
 contains
    !> Degree of saturation and its slopes, with hysteresis those of main drying; on an error nothing is written. Suction
    !> in the unit of p_atm, void ratio above 0 and S_w [-]; slopes [1/unit, -]. MUD_NOT_PREPARED, MUD_BAD_INPUT,
    !> MUD_BAD_VOID_RATIO. docs/theory/material.md section 2.1.
-   integer(c_int) function mud_saturation(prepared, suction, void_ratio, s_w, ds_dpc, ds_de) &
+   integer(c_int) function c_saturation(prepared, suction, void_ratio, s_w, ds_dpc, ds_de) &
       bind(c, name='mud_saturation')
       type(c_ptr), value :: prepared, s_w, ds_dpc, ds_de
       real(c_double), value :: suction, void_ratio
@@ -28,19 +28,19 @@ contains
       type(mud_status_t) :: status
 
       call find_prepared(prepared, material, status)
-      mud_saturation = status%code
+      c_saturation = status%code
       if (status%code /= MUD_OK) return
-      mud_saturation = MUD_BAD_INPUT
+      c_saturation = MUD_BAD_INPUT
       if (.not. is_finite(suction)) return
-      mud_saturation = MUD_BAD_VOID_RATIO
+      c_saturation = MUD_BAD_VOID_RATIO
       if (.not. is_finite(void_ratio)) return
       if (.not. void_ratio > 0.0_c_double) return
-      mud_saturation = MUD_OK
+      c_saturation = MUD_OK
       sat = saturation(material%par%suction%retention_t, suction, void_ratio)
       call put_real(sat%s_w, s_w)
       call put_real(sat%ds_dpc, ds_dpc)
       call put_real(sat%ds_de, ds_de)
-   end function mud_saturation
+   end function c_saturation
 
    !> Degree of saturation of a point with a past: its STATEV tells the void ratio and, with hysteresis, from which S_w
    !> at which suction it goes on. The slope is that against void ratio [-]. MUD_BAD_INPUT, MUD_BAD_STATE.

@@ -17,10 +17,10 @@ module mud_save
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
    use mud_tensor, only: is_finite
-   use mud_to_host, only: put
+   use mud_to_host, only: put, get
    implicit none (type, external)
    private
-   public :: mud_save_increment, write_increment, PATH_LENGTH
+   public :: c_save_increment, write_increment, PATH_LENGTH
 
    integer, parameter :: PATH_LENGTH = 1024, ORIGIN_LENGTH = 200, PROBLEM_LENGTH = 300
    integer, parameter :: LAST_TANGENT = 3
@@ -53,7 +53,7 @@ module mud_save
 contains
    !> See mud.h. The increment is run once more, so that the file says how it ends. Returns MUD_OK whatever that end is;
    !> MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_OPTION, MUD_BAD_NSTATV, MUD_NOT_WRITTEN.
-   integer(c_int) function mud_save_increment(path, origin, storage, stress0, statev0, n_statev, dstrain, suction, &
+   integer(c_int) function c_save_increment(path, origin, storage, stress0, statev0, n_statev, dstrain, suction, &
            tangent, text, len) bind(c, name='mud_save_increment')
       type(c_ptr), value :: path, origin, storage, stress0, statev0, dstrain, text
       integer(c_int), value :: n_statev, tangent, len
@@ -69,15 +69,15 @@ contains
       logical :: whole
 
       call find_prepared(storage, material, status)
-      mud_save_increment = status%code
+      c_save_increment = status%code
       if (status%code == MUD_OK) then
-         if (n_statev < statev_size(material%par%options_t)) mud_save_increment = MUD_BAD_NSTATV
+         if (n_statev < statev_size(material%par%options_t)) c_save_increment = MUD_BAD_NSTATV
       end if
-      if (tangent < 0 .or. tangent > LAST_TANGENT) mud_save_increment = MUD_BAD_OPTION
+      if (tangent < 0 .or. tangent > LAST_TANGENT) c_save_increment = MUD_BAD_OPTION
       if (.not. (c_associated(path) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
-                 c_associated(dstrain))) mud_save_increment = MUD_NULL_ARGUMENT
-      call put(status_text(mud_save_increment), text, len)
-      if (mud_save_increment /= MUD_OK) return
+                 c_associated(dstrain))) c_save_increment = MUD_NULL_ARGUMENT
+      call put(status_text(c_save_increment), text, len)
+      if (c_save_increment /= MUD_OK) return
 
       call c_f_pointer(stress0, stress_in, [6])
       call c_f_pointer(statev0, statev_in, [statev_size(material%par%options_t)])
@@ -91,9 +91,9 @@ contains
                               suction_change(statev_in(S_SUCTION), suction), tangent, report, problem)
       end if
       if (problem == '') return
-      mud_save_increment = MUD_NOT_WRITTEN
+      c_save_increment = MUD_NOT_WRITTEN
       call put(trim(problem)//': '//status_text(MUD_NOT_WRITTEN), text, len)
-   end function mud_save_increment
+   end function c_save_increment
 
    !> Writes a new file or none: one of that name is never touched, one that cannot be finished is removed. props(:) of
    !> NPROPS, statev(:) with the numbers of a point; tension positive, engineering shear [-], stress and suction in the
@@ -220,24 +220,4 @@ contains
          if (clean(i:i) == '''') clean(i:i) = ' '
       end do
    end function without_quotes
-
-   !> A C string; `whole` if it fits. What is not printable becomes a blank: a line must stay a line.
-   subroutine get(string, text, whole)
-      type(c_ptr), intent(in) :: string
-      character(*), intent(out) :: text
-      logical, intent(out) :: whole
-      character(kind=c_char), pointer :: letters(:)
-      integer :: i
-
-      text = ''
-      whole = .true.
-      if (.not. c_associated(string)) return
-      call c_f_pointer(string, letters, [len(text) + 1])
-      do i = 1, len(text) + 1
-         if (letters(i) == c_null_char) return
-         if (i > len(text)) exit
-         text(i:i) = merge(letters(i), ' ', iachar(letters(i)) >= 32)
-      end do
-      whole = .false.
-   end subroutine get
 end module mud_save

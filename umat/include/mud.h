@@ -11,9 +11,9 @@
  *
  * Every array is the caller's. Nothing is allocated or kept between calls; calls are thread-safe. No file is read or
  * written, but for mud_save_increment and what MUD_SAVE_FAILED asks of umat_ (see "failed increments" below). What is
- * printed goes to standard error, once a process (MUD_MESSAGES=off silences): each distinct refusal of umat_, vumat_,
- * user_mod_ and MFront's behaviours, and doubtful starts and void ratios of every entry. umat_ where PNEWDT is NULL,
- * and vumat_, alone return a NaN, in the stress of a point that they refuse (MUD_NO_PNEWDT=keep leaves the stress).
+ * printed goes to standard error, once a process (MUD_MESSAGES=off silences): each distinct refusal of umat_ and
+ * mud_refuse, and doubtful starts and void ratios of every entry. umat_ where PNEWDT is NULL, and mud_refuse (vumat_),
+ * alone return a NaN, in the stress of a point that they refuse (MUD_NO_PNEWDT=keep leaves the stress).
  * Functions return MUD_OK (0), a negative code (the caller's mistake) or a positive one (a hard increment: cut it).
  * Text goes into the caller's buffer of `len` bytes, cut to fit and always terminated; a NULL buffer is allowed.
  */
@@ -35,6 +35,12 @@ enum mud_status {
    MUD_NOT_FINITE = 5, MUD_INCREMENT_TOO_LARGE = 6
 };
 
+/* What a status is about; the index counts its entries from 1, 0 is the whole. */
+enum mud_subject {
+   MUD_ON_NOTHING = 0, MUD_ON_PROPS = 1, MUD_ON_STATEV = 2, MUD_ON_STRESS = 3, MUD_ON_STRAIN = 4, MUD_ON_SUCTION = 5,
+   MUD_ON_VOID_RATIO = 6, MUD_ON_ARGUMENT = 7, MUD_ON_ROTATION = 8
+};
+
 enum mud_list  { MUD_PROPS = 1, MUD_STATEV = 2 };
 enum mud_field {
    MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5,
@@ -51,7 +57,7 @@ enum mud_tangent {
 /* What one update did and, on failure, where it stopped: filled by every mud_update. */
 typedef struct mud_report {
    int status;              /* the code that was returned                                              */
-   int subject;             /* what a failure is about (internal; mud_message makes a sentence of it)  */
+   int subject;             /* what a failure is about, of mud_subject; mud_message makes a sentence   */
    int index;               /* entry of that array, from 1; 0: none                                    */
    int n_rate;              /* rate evaluations                                                        */
    int n_substep;           /* accepted substeps                                                       */
@@ -94,6 +100,8 @@ int mud_convert_props(double *props, int nprops, double factor);
 /* Text: a sentence for the first fault; with MUD_OK "no error" or, where stresses of PROPS seem to have another unit
  * than p_atm, a sentence that begins with "warning: ". */
 int mud_validate_props(const double *props, int nprops, char *text, int len);
+/* What mud_prepare would return, and which entry has which value out of which range. */
+int mud_check_props(const double *props, int nprops, mud_report *report);
 
 /* The same names as constants, for tables of your own that the linker fills; as many as mud_count says. They are those
  * of the library that is linked, so do not copy their number into code. A point without hysteresis has fewer numbers
@@ -185,6 +193,29 @@ typedef struct mud_summary {
 int mud_init_points(const double *materials, int nmaterials, const mud_points *points, mud_summary *summary);
 int mud_update_points(const double *materials, int nmaterials, const mud_points *points, mud_summary *summary);
 int mud_saturation_points(const double *materials, int nmaterials, const mud_points *points, mud_summary *summary);
+
+/* --- entries that other programs prescribe ------------------------------------------------------------- */
+/* For an interface of your own to a host that neither begins points nor reads a code. Those of Abaqus/Explicit, PLAXIS
+ * and MFront are written on this file alone: umat/doors. */
+typedef struct mud_place {
+   char entry[24];          /* name of the entry in what is printed; terminated                        */
+   const int *step, *increment, *element, *point;   /* where the host is, as far as it says: or NULL   */
+} mud_place;
+
+enum mud_way { MUD_IN_PIECES = 32 };   /* Added to a kind of tangent. */
+
+/* mud_update for such a host. A point whose statev0 has no past (layout 0) begins in this increment, with suction0 and
+ * the void ratio and saturation that statev0 presets, as in a UMAT; a NULL dstrain integrates nothing: the point only
+ * begins, and blocks stay. With MUD_IN_PIECES a hard increment is taken in up to 256 equal pieces. What is doubtful
+ * about PROPS, start and end is printed once a process, with the place. What is refused is saved where MUD_SAVE_FAILED
+ * asks for it, and not printed: mud_refuse does that. Effective stress alone; place may be NULL. */
+int mud_increment_at(const mud_place *place, const double *material, const double *stress0, const double *statev0,
+                     int nstatev, double suction0, const double *dstrain, double suction, int tangent,
+                     double *stress1, double *statev1, mud_blocks *blocks, mud_report *report);
+/* Prints once a process that an increment was refused: the sentence of the report, the place and the consequence, such
+ * as ". IABORT is 1". A host that would see nothing else gives its stress[n]: it becomes NaN unless MUD_NO_PNEWDT is
+ * keep, and the process tells at its end how often. NULL: no stress is touched. */
+int mud_refuse(const mud_place *place, const mud_report *report, const char *consequence, double *stress, int n);
 
 /* --- failed increments ---------------------------------------------------------------------------------- */
 /* One substep that an update tried. */

@@ -2,27 +2,40 @@
 !> Fortran view of mud.h, for hosts: interfaces only, nothing of the library's inside. Compile it with your code.
 !> Conventions, meanings and errors are those of mud.h; indices are those of C, from 0.
 module mud_interface
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_ptr
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_null_ptr
    implicit none (type, external)
    private
-   public :: mud_report, mud_blocks, mud_points, mud_summary, mud_substep, mud_abi_version, mud_version, mud_count, &
-             mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, mud_default_props, mud_convert_props, &
-             mud_validate_props, mud_prepared_size, mud_prepared_statev, mud_prepare, mud_saturation, mud_init, &
+   public :: mud_report, mud_blocks, mud_points, mud_summary, mud_substep, mud_place, mud_abi_version, mud_version, &
+             mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, mud_default_props, &
+             mud_convert_props, mud_validate_props, mud_check_props, mud_prepared_size, mud_prepared_statev, &
+             mud_prepare, mud_saturation, mud_init, &
              mud_update, mud_init_points, mud_update_points, mud_saturation_points, mud_trace_increment, &
-             mud_save_increment, &
-             mud_status_text, mud_message
+             mud_increment_at, mud_refuse, mud_save_increment, mud_status_text, mud_message
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
       MUD_ROTATION, MUD_EVOLUTION
    public :: MUD_SUBSTEP_REJECTED, MUD_SUBSTEP_ACCEPTED, MUD_SUBSTEP_FAILED, MUD_MODE_ORDINARY, MUD_MODE_ELASTIC, &
       MUD_MODE_HELD, MUD_JUMP_NONE, MUD_JUMP_REVERSAL, MUD_JUMP_RETURN, MUD_JUMP_NEW
    public :: MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM, MUD_TANGENT_CONSISTENT, &
-      MUD_TANGENT_PRESENT, MUD_TOTAL_STRESS
+      MUD_TANGENT_PRESENT, MUD_TOTAL_STRESS, MUD_IN_PIECES
+   public :: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, MUD_BAD_INPUT, &
+      MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_NOT_WRITTEN, MUD_NOT_PREPARED, MUD_MINIMUM_STEP, &
+      MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE
+   public :: MUD_ON_NOTHING, MUD_ON_PROPS, MUD_ON_STATEV, MUD_ON_STRESS, MUD_ON_STRAIN, MUD_ON_SUCTION, &
+      MUD_ON_VOID_RATIO, MUD_ON_ARGUMENT, MUD_ON_ROTATION
 
+   integer(c_int), parameter :: MUD_OK = 0, MUD_BAD_NPROPS = -1, MUD_BAD_NSTATV = -2, MUD_BAD_NTENS = -3, &
+      MUD_BAD_PROPS = -4, MUD_BAD_STATE = -5, MUD_BAD_INPUT = -6, MUD_NULL_ARGUMENT = -7, MUD_BAD_VOID_RATIO = -8, &
+      MUD_BAD_OPTION = -9, MUD_NOT_WRITTEN = -10, MUD_NOT_PREPARED = -11, MUD_MINIMUM_STEP = 1, &
+      MUD_TOO_MANY_SUBSTEPS = 2, MUD_NO_DIRECTION = 3, MUD_VOID_RATIO_LIMIT = 4, MUD_NOT_FINITE = 5, &
+      MUD_INCREMENT_TOO_LARGE = 6
+   integer(c_int), parameter :: MUD_ON_NOTHING = 0, MUD_ON_PROPS = 1, MUD_ON_STATEV = 2, MUD_ON_STRESS = 3, &
+      MUD_ON_STRAIN = 4, MUD_ON_SUCTION = 5, MUD_ON_VOID_RATIO = 6, MUD_ON_ARGUMENT = 7, MUD_ON_ROTATION = 8
    integer(c_int), parameter :: MUD_PROPS = 1, MUD_STATEV = 2
    integer(c_int), parameter :: MUD_NAME = 1, MUD_SYMBOL = 2, MUD_UNIT = 3, MUD_ORIGIN = 4, MUD_MEANING = 5, &
       MUD_INITIAL = 6, MUD_ROTATION = 7, MUD_EVOLUTION = 8
    integer(c_int), parameter :: MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, &
-                                MUD_TANGENT_CONSISTENT = 3, MUD_TANGENT_PRESENT = 4, MUD_TOTAL_STRESS = 16
+                                MUD_TANGENT_CONSISTENT = 3, MUD_TANGENT_PRESENT = 4, MUD_TOTAL_STRESS = 16, &
+                                MUD_IN_PIECES = 32
 
    integer(c_int), parameter :: MUD_SUBSTEP_REJECTED = 0, MUD_SUBSTEP_ACCEPTED = 1, MUD_SUBSTEP_FAILED = 2
    integer(c_int), parameter :: MUD_MODE_ORDINARY = 0, MUD_MODE_ELASTIC = 1, MUD_MODE_HELD = 2
@@ -30,9 +43,11 @@ module mud_interface
 
    !> struct mud_report of mud.h.
    type, bind(c) :: mud_report
-      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reset, n_floor, n_cap_d, n_cap_h, &
-                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile, n_turns_cleared
-      real(c_double) :: value, lower, upper, reached, pnewdt
+      integer(c_int) :: status = MUD_OK, subject = MUD_ON_NOTHING, index = 0, n_rate = 0, n_substep = 0, &
+                        n_reject = 0, n_reset = 0, n_floor = 0, n_cap_d = 0, n_cap_h = 0, n_hysteresis = 0, &
+                        n_iso_kept = 0, n_no_root = 0, n_min_step = 0, n_open = 0, n_tensile = 0, n_turns_cleared = 0
+      real(c_double) :: value = 0.0_c_double, lower = 0.0_c_double, upper = 0.0_c_double, reached = 0.0_c_double, &
+                        pnewdt = 1.0_c_double
    end type mud_report
 
    !> struct mud_blocks of mud.h.
@@ -62,6 +77,12 @@ module mud_interface
       integer(c_int) :: outcome, mode, jump, landed, n_rate, n_reset, n_guard, n_no_root
       real(c_double) :: time, size, error, void_ratio, saturation, suction, stress(6)
    end type mud_substep
+
+   !> struct mud_place of mud.h: c_loc of integers of C, or c_null_ptr.
+   type, bind(c) :: mud_place
+      character(kind=c_char) :: entry(24) = c_null_char
+      type(c_ptr) :: step = c_null_ptr, increment = c_null_ptr, element = c_null_ptr, point = c_null_ptr
+   end type mud_place
 
    interface
       integer(c_int) function mud_abi_version() bind(c, name='mud_abi_version')
@@ -131,6 +152,13 @@ module mud_interface
          real(c_double), intent(in) :: props(nprops)
          character(kind=c_char), intent(out) :: text(*)
       end function mud_validate_props
+
+      integer(c_int) function mud_check_props(props, nprops, report) bind(c, name='mud_check_props')
+         import :: c_int, c_double, mud_report
+         integer(c_int), value :: nprops
+         real(c_double), intent(in) :: props(nprops)
+         type(mud_report), intent(out) :: report
+      end function mud_check_props
 
       !> Doubles of a prepared material.
       pure integer(c_int) function mud_prepared_size() bind(c, name='mud_prepared_size')
@@ -219,6 +247,29 @@ module mud_interface
          integer(c_int), intent(out) :: attempts
          type(mud_report), intent(out), optional :: report
       end function mud_trace_increment
+
+      integer(c_int) function mud_increment_at(place, material, stress0, statev0, nstatev, suction0, dstrain, suction, &
+              tangent, stress1, statev1, blocks, report) bind(c, name='mud_increment_at')
+         import :: c_int, c_double, mud_blocks, mud_place, mud_report
+         type(mud_place), intent(in) :: place
+         integer(c_int), value :: nstatev, tangent
+         real(c_double), intent(in) :: material(*), stress0(6), statev0(nstatev)
+         real(c_double), intent(in), optional :: dstrain(6)
+         real(c_double), value :: suction0, suction
+         real(c_double), intent(inout), optional :: stress1(6), statev1(nstatev)
+         type(mud_blocks), intent(inout), optional :: blocks
+         type(mud_report), intent(out), optional :: report
+      end function mud_increment_at
+
+      !> The consequence must end with c_null_char.
+      integer(c_int) function mud_refuse(place, report, consequence, stress, n) bind(c, name='mud_refuse')
+         import :: c_char, c_int, c_double, mud_place, mud_report
+         type(mud_place), intent(in) :: place
+         type(mud_report), intent(in) :: report
+         character(kind=c_char), intent(in) :: consequence(*)
+         real(c_double), intent(inout), optional :: stress(*)
+         integer(c_int), value :: n
+      end function mud_refuse
 
       !> The texts handed over must end with c_null_char.
       integer(c_int) function mud_save_increment(path, origin, material, stress0, statev0, nstatev, dstrain, suction, &

@@ -491,9 +491,11 @@ contains
    !> Place of a parameter in PROPS, 0 if there is none of that name. Case does not matter, as in a namelist.
    pure integer function property_index(name) result(index)
       character(*), intent(in) :: name
+      character(len(name)) :: wanted
 
+      wanted = lower_case(name)
       do index = 1, NPROPS
-         if (lower_case(PROPERTIES(index)%name) == lower_case(name)) return
+         if (lower_case(PROPERTIES(index)%name) == wanted) return
       end do
       index = 0
    end function property_index
@@ -501,9 +503,11 @@ contains
    !> Place of a state variable in STATEV, 0 if there is none of that name; tensors as name_11 and so on.
    pure integer function statev_index(name) result(index)
       character(*), intent(in) :: name
+      character(len(name)) :: wanted
 
+      wanted = lower_case(name)
       do index = 1, NSTATV
-         if (statev_name(index) == lower_case(name)) return
+         if (statev_name(index) == wanted) return
       end do
       index = 0
    end function statev_index

@@ -3,36 +3,27 @@
 !> description (names, types, counts) is written by umat/tables/mud_write_tables.f90. Sign and order of components are
 !> those of MUD; symmetric tensors are in Mandel's notation (shear times square root of 2), matrices row by row.
 module mud_mfront
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
-   use mud_arguments, only: has_past
-   use mud_kernel, only: report_t, output_t, kernel_point, kernel_tangent, failed_report
-   use mud_kinds, only: wp
-   use mud_messages, only: report_text
-   use mud_params, only: params_t, read_params, completed
-   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked
-   use mud_registry, only: NPROPS_BASE, NSTATV => NSTATV_BASE, &
-      S_VOID_RATIO, S_SATURATION, S_SUCTION
-   use mud_retention, only: saturation_t, saturation
-   use mud_state, only: E_LOWER, E_UPPER
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
-      ON_ARGUMENT, ON_STATEV, ON_SUCTION
-   use mud_tensor, only: is_finite
-   use mud_to_host, only: put
-   use mud_total, only: effective_stress, total_stress, total_blocks
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
+   use mud_door, only: place_of, props_at, statev_at, fewest_props, has_past, prepare
+   use mud_interface, only: mud_report, mud_blocks, mud_place, mud_prepared_size, mud_prepared_statev, mud_saturation, &
+      mud_increment_at, mud_refuse, mud_message, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_STATE, MUD_BAD_OPTION, &
+      MUD_ON_ARGUMENT, MUD_ON_STATEV, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM, &
+      MUD_TANGENT_CONSISTENT, MUD_TANGENT_PRESENT
    implicit none (type, external)
    private
    public :: mechanical_3d, mechanical_plane, mechanical_axial, mechanical_generalised, mechanical_1d, unsaturated_3d, &
              unsaturated_plane, unsaturated_axial, unsaturated_generalised, unsaturated_1d
 
+   integer, parameter :: wp = c_double
    integer(c_int), parameter :: FAILED = -1, RELIABLE = 1     !< Outcomes that MGIS understands.
    integer(c_int), parameter :: MESSAGE_ROOM = 512            !< Characters behind error_message.
    real(wp), parameter :: SHEAR = sqrt(2.0_wp)                !< Mandel's factor.
    real(wp), parameter :: MANDEL(6) = [1.0_wp, 1.0_wp, 1.0_wp, SHEAR, SHEAR, SHEAR]
    real(wp), parameter :: WITH_SPEED_OF_SOUND = 50.0_wp       !< K(1) above it asks for the speed of sound too.
-   character(*), parameter :: DOOR = 'MFront'                 !< Name of the interface in sentences.
-   integer, parameter :: NONE = 0, ELASTIC = 1, CONTINUUM = 2, CONSISTENT = 3
    !> S_w of a state may differ from that of its suction by this, what a text of seven digits leaves [-].
    real(wp), parameter :: SAME_SATURATION = 1.0e-6_wp
+   real(wp), parameter :: SMALLEST_CUT = 0.1_wp   !< Factor on the time step where nothing was tried [-].
 
    !> A state of a point as MGIS hands it over, in its order.
    type, bind(c) :: state_view_t
@@ -134,186 +125,201 @@ contains
       integer, intent(in) :: n              !< Components of a tensor: 6, 4 or 3.
       logical, intent(in) :: unsaturated
       type(point_t) :: point
-      type(params_t) :: par
-      type(mud_status_t) :: status
-      type(report_t) :: report
+      type(mud_report) :: report
+      real(c_double) :: material(mud_prepared_size())
       real(c_double), pointer :: factor
+      integer(c_int) :: code
 
-      call find_arrays(view, merge(n + 1, n, unsaturated), point, status)
-      if (status%code == MUD_OK) call read_params(point%props, par, status)
-      if (status%code == MUD_OK) then
-         call answer(view, par, n, unsaturated, point, report)
-      else
-         report = failed_report(status)
+      call find_arrays(view, merge(n + 1, n, unsaturated), point, report)
+      if (report%status == MUD_OK) call prepare(point%props, material, report)
+      if (report%status == MUD_OK) then
+         call c_f_pointer(view%s0%internal_state_variables, point%state0, [mud_prepared_statev(material)])
+         call c_f_pointer(view%s1%internal_state_variables, point%state1, [mud_prepared_statev(material)])
+         call answer(view, material, n, unsaturated, point, report)
       end if
       outcome = RELIABLE
       if (report%status == MUD_OK) return
       outcome = FAILED
-      call put('MUD: '//report_text(report), view%error_message, MESSAGE_ROOM)
-      call say_refusal(report, place_t(DOOR), '')   ! hosts drop the message
+      call give_message(report, view%error_message)
+      code = mud_refuse(place_of('MFront'), report, c_null_char, n=0_c_int)   ! hosts drop the message
       if (.not. c_associated(view%rdt)) return
       call c_f_pointer(view%rdt, factor)
       factor = min(factor, report%pnewdt)
    end function integrate
 
-   subroutine answer(view, par, n, unsaturated, point, report)
+   !> The sentence of a refusal, where the host has a buffer for it.
+   subroutine give_message(report, buffer)
+      type(mud_report), intent(in) :: report
+      type(c_ptr), intent(in) :: buffer
+      character(*), parameter :: BEFORE = 'MUD: '
+      character(kind=c_char), pointer, contiguous :: letters(:)
+      integer(c_int) :: code
+
+      if (.not. c_associated(buffer)) return
+      call c_f_pointer(buffer, letters, [MESSAGE_ROOM])
+      letters(:len(BEFORE)) = transfer(BEFORE, letters)
+      code = mud_message(report, letters(len(BEFORE) + 1:), MESSAGE_ROOM - len(BEFORE))
+   end subroutine give_message
+
+   subroutine answer(view, material, n, unsaturated, point, report)
       type(view_t), intent(in) :: view
-      type(params_t), intent(in) :: par
+      real(c_double), intent(in) :: material(:)
       integer, intent(in) :: n
       logical, intent(in) :: unsaturated
       type(point_t), intent(in) :: point
-      type(report_t), intent(out) :: report
-      type(output_t) :: output
-      real(wp) :: stress(6), strain(6), suction(2), request
+      type(mud_report), intent(out) :: report
+      type(mud_blocks) :: blocks
+      type(mud_place) :: place
+      real(wp) :: start(6), stress(6), strain(6), state(size(point%state0)), suction(2), request
       logical :: speed, predicts
+      integer(c_int) :: code
+      integer :: kind
 
       request = point%k(1)
-      if (.not. is_finite(request)) then
-         report = failed_report(fail(MUD_BAD_OPTION, ON_ARGUMENT))
+      if (.not. ieee_is_finite(request)) then
+         report = mud_report(MUD_BAD_OPTION, MUD_ON_ARGUMENT, pnewdt=SMALLEST_CUT)
          return
       end if
       speed = request > WITH_SPEED_OF_SOUND
       if (speed) request = request - 2.0_wp*WITH_SPEED_OF_SOUND
       predicts = request < -0.5_wp
-      stress = 0.0_wp
+      kind = kind_of(request)
+      start = 0.0_wp
       strain = 0.0_wp
-      stress(1:n) = point%force0(1:n)/MANDEL(1:n)
+      start(1:n) = point%force0(1:n)/MANDEL(1:n)
       strain(1:n) = (point%gradient1(1:n) - point%gradient0(1:n))*MANDEL(1:n)   ! engineering shear
-      suction = point%state0(S_SUCTION)
-      if (unsaturated) call start_unsaturated(par, point, n, stress, suction, report)
-      if (unsaturated) then
-         if (report%status /= MUD_OK) return
+      suction = point%state0(statev_at('suction'))
+      if (unsaturated) call start_unsaturated(material, point, n, start, suction, report)
+      if (report%status /= MUD_OK) return
+      if (kind == MUD_TANGENT_ELASTIC .and. predicts) then
+         strain = 0.0_wp
+         suction(2) = suction(1)
       end if
-      call remark_on_start(par, stress, point%state0, suction(1), place_t(DOOR))
-      if (predicts) then
-         if (request < -1.5_wp) then
-            call kernel_tangent(par, stress, point%state0, strain, suction(1), suction(2) - suction(1), output, report)
-         else
-            call kernel_point(par, stress, point%state0, 0.0_wp*MANDEL, suction(1), 0.0_wp, ELASTIC, output, report)
-         end if
-      else
-         call kernel_point(par, stress, point%state0, strain, suction(1), suction(2) - suction(1), kind_of(request), &
-                           output, report)
-      end if
-      if (report%status /= MUD_OK) then
-         call save_if_asked(completed(point%props), stress, point%state0, strain, suction(1), suction(2) - suction(1), &
-                            place_t(DOOR), report)
-         return
-      end if
-      if (.not. has_past(point%state0)) call remark_on_props(completed(point%props), place_t(DOOR))
+      place = place_of('MFront')
+      stress = start
+      state = point%state0
+      code = mud_increment_at(place, material, start, point%state0, size(state), suction(1), strain, suction(2), kind, &
+                              stress, state, blocks, report)
+      if (code /= MUD_OK) return
+      if (speed) call write_speed_of_sound(view, material, stress, state, merge(suction(1), suction(2), predicts))
       if (.not. predicts) then
-         call remark_on_end(output%stress, output%statev, place_t(DOOR))
-         point%state1(1:NSTATV) = output%statev(:NSTATV)
-         stress = output%stress
-         if (unsaturated) stress = total_stress(stress, 0.0_wp, output%statev(S_SATURATION), suction(2))
+         point%state1 = state
+         if (unsaturated) stress(1:3) = stress(1:3) + blocks%s_w*suction(2)
          point%force1(1:n) = stress(1:n)*MANDEL(1:n)
-         if (unsaturated) point%force1(n + 1) = output%statev(S_SATURATION)
+         if (unsaturated) point%force1(n + 1) = blocks%s_w
       end if
       ! A prediction has the slopes of the present state, so its suction is the present one.
-      if (output%has_tangent) call write_blocks(view, n, unsaturated, merge(suction(1), suction(2), predicts), output)
-      if (speed) call write_speed_of_sound(view, par, output)
+      if (kind /= MUD_TANGENT_NONE) call write_blocks(view, n, unsaturated, merge(suction(1), suction(2), predicts), &
+                                                      blocks)
    end subroutine answer
 
    !> Tangent kind of the library for a request of MGIS; it has no secant.
    pure integer function kind_of(request)
       real(wp), intent(in) :: request
 
-      kind_of = CONSISTENT
-      if (request < 0.5_wp) then
-         kind_of = NONE
+      if (request < -1.5_wp) then
+         kind_of = MUD_TANGENT_PRESENT
+      else if (request < -0.5_wp) then
+         kind_of = MUD_TANGENT_ELASTIC
+      else if (request < 0.5_wp) then
+         kind_of = MUD_TANGENT_NONE
       else if (request < 1.5_wp) then
-         kind_of = ELASTIC
+         kind_of = MUD_TANGENT_ELASTIC
       else if (request < 3.5_wp) then
-         kind_of = CONTINUUM
+         kind_of = MUD_TANGENT_CONTINUUM
+      else
+         kind_of = MUD_TANGENT_CONSISTENT
       end if
    end function kind_of
 
-   !> Total stress at the start becomes effective stress. The suction is that of the state where it has a past, for the
-   !> degree of saturation may not jump between two increments; otherwise that of the host's liquid pressure. Air is at
-   !> pressure 0. MUD_BAD_STATE where S_w of the state is not that of its suction: the stress would jump with it.
-   subroutine start_unsaturated(par, point, n, stress, suction, report)
-      type(params_t), intent(in) :: par
+   !> Total stress at the start becomes effective stress, docs/theory/material.md section 1.1, where it has numbers; the
+   !> update refuses others. The suction is that of the state where it has a past, for the degree of saturation may
+   !> not jump between two increments; otherwise that of the host's liquid pressure. Air is at pressure 0. MUD_BAD_STATE
+   !> where S_w of the state is not that of its suction: the stress would jump with it.
+   subroutine start_unsaturated(material, point, n, stress, suction, report)
+      real(c_double), intent(in) :: material(:)
       type(point_t), intent(in) :: point
       integer, intent(in) :: n
       real(wp), intent(inout) :: stress(6)
-      real(wp), intent(out) :: suction(2)   !< At the start and at the end [kPa].
-      type(report_t), intent(out) :: report
-      type(saturation_t) :: sat
-      type(mud_status_t) :: status
-      real(wp) :: e
+      real(wp), intent(inout) :: suction(2)   !< At the start and at the end [kPa].
+      type(mud_report), intent(inout) :: report
+      real(wp) :: e, s_w, given
       logical :: past
 
-      suction = -[point%gradient0(n + 1), point%gradient1(n + 1)]
-      if (.not. all(is_finite(suction))) status = fail(MUD_BAD_INPUT, ON_SUCTION)
-      if (status%code == MUD_OK .and. all(is_finite(point%state0))) then
-         past = has_past(point%state0)
-         if (past) suction(1) = point%state0(S_SUCTION)
-         e = point%state0(S_VOID_RATIO)
-         if (e <= E_LOWER .or. e >= E_UPPER) e = par%e_0   ! none is given; a wrong one is refused by the update
-         sat = saturation(par%suction%retention_t, suction(1), e)
-         if (past .and. abs(point%state0(S_SATURATION) - sat%s_w) > SAME_SATURATION) &
-            status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, point%state0(S_SATURATION), &
-                          sat%s_w - SAME_SATURATION, sat%s_w + SAME_SATURATION)
-         stress = effective_stress(stress, 0.0_wp, sat%s_w, suction(1))
+      past = has_past(point%state0)
+      if (.not. past) suction(1) = -point%gradient0(n + 1)
+      suction(2) = -point%gradient1(n + 1)
+      e = point%state0(statev_at('void_ratio'))
+      if (.not. past .and. ieee_is_finite(e)) then
+         if (abs(e) <= 0.0_wp) e = point%props(props_at('e_0'))
       end if
-      report = failed_report(status)
+      if (mud_saturation(material, suction(1), e, s_w) /= MUD_OK) return
+      given = point%state0(statev_at('saturation'))
+      if (past .and. ieee_is_finite(given)) then
+         if (abs(given - s_w) > SAME_SATURATION) report = mud_report(MUD_BAD_STATE, MUD_ON_STATEV, &
+            statev_at('saturation'), value=given, lower=s_w - SAME_SATURATION, upper=s_w + SAME_SATURATION, &
+            pnewdt=SMALLEST_CUT)
+      end if
+      stress(1:3) = stress(1:3) - s_w*suction(1)
    end subroutine start_unsaturated
 
    !> The blocks one after the other, each row by row: a row is a component of the force.
-   subroutine write_blocks(view, n, unsaturated, suction, output)
+   subroutine write_blocks(view, n, unsaturated, suction, blocks)
       type(view_t), intent(in) :: view
       integer, intent(in) :: n
       logical, intent(in) :: unsaturated
       real(wp), intent(in) :: suction
-      type(output_t), intent(inout) :: output
+      type(mud_blocks), intent(inout) :: blocks   !< Given for effective stress, returned for total stress.
       real(c_double), pointer, contiguous :: k(:)
       integer :: i
 
       call c_f_pointer(view%k, k, [merge((n + 1)**2, n*n, unsaturated)])
-      if (unsaturated) call total_blocks(output%statev(S_SATURATION), suction, output%dsw_deps, output%dsw_dpc, &
-                                         output%dsig_deps, output%dsig_dpc)
+      if (unsaturated) then
+         do i = 1, 3
+            blocks%dsig_deps(i, :) = blocks%dsig_deps(i, :) + suction*blocks%dsw_deps
+         end do
+         blocks%dsig_dpc(1:3) = blocks%dsig_dpc(1:3) + (blocks%s_w + suction*blocks%dsw_dpc)
+      end if
       do i = 1, n
-         k(n*(i - 1) + 1:n*i) = MANDEL(i)*output%dsig_deps(i, 1:n)*MANDEL(1:n)
+         k(n*(i - 1) + 1:n*i) = MANDEL(i)*blocks%dsig_deps(i, 1:n)*MANDEL(1:n)
       end do
       if (.not. unsaturated) return
-      k(n*n + 1:n*n + n) = -output%dsig_dpc(1:n)*MANDEL(1:n)
-      k(n*n + n + 1:n*n + 2*n) = output%dsw_deps(1:n)*MANDEL(1:n)
-      k((n + 1)**2) = -output%dsw_dpc
+      k(n*n + 1:n*n + n) = -blocks%dsig_dpc(1:n)*MANDEL(1:n)
+      k(n*n + n + 1:n*n + 2*n) = blocks%dsw_deps(1:n)*MANDEL(1:n)
+      k((n + 1)**2) = -blocks%dsw_dpc
    end subroutine write_blocks
 
    !> Writes the speed of the elastic pressure wave where the host gives a density.
-   subroutine write_speed_of_sound(view, par, output)
+   subroutine write_speed_of_sound(view, material, stress, state, suction)
       type(view_t), intent(in) :: view
-      type(params_t), intent(in) :: par
-      type(output_t), intent(in) :: output
-      type(output_t) :: still
-      type(report_t) :: report
+      real(c_double), intent(in) :: material(:), stress(6), state(:), suction
+      type(mud_blocks) :: blocks
       real(c_double), pointer :: density, speed
-      real(wp) :: none(6)
+      real(wp) :: none(6), same(6), unmoved(size(state))
 
       if (.not. (c_associated(view%speed_of_sound) .and. c_associated(view%s1%mass_density))) return
       call c_f_pointer(view%s1%mass_density, density)
       call c_f_pointer(view%speed_of_sound, speed)
-      if (.not. is_finite(density)) return
+      if (.not. ieee_is_finite(density)) return
       if (.not. density > 0.0_wp) return
       none = 0.0_wp
-      call kernel_point(par, output%stress, output%statev, none, output%statev(S_SUCTION), 0.0_wp, ELASTIC, still, &
-                        report)
-      if (report%status == MUD_OK) speed = sqrt(still%dsig_deps(1, 1)/density)
+      if (mud_increment_at(place_of('MFront'), material, stress, state, size(state), suction, none, suction, &
+                           MUD_TANGENT_ELASTIC, same, unmoved, blocks) == MUD_OK) &
+         speed = sqrt(blocks%dsig_deps(1, 1)/density)
    end subroutine write_speed_of_sound
 
    !> Every array that the behaviour reads or writes must be there.
-   subroutine find_arrays(view, n_forces, point, status)
+   subroutine find_arrays(view, n_forces, point, report)
       type(view_t), intent(in) :: view
       integer, intent(in) :: n_forces
       type(point_t), intent(out) :: point
-      type(mud_status_t), intent(out) :: status
+      type(mud_report), intent(out) :: report
 
       if (.not. all([c_associated(view%k), c_associated(view%s0%gradients), c_associated(view%s1%gradients), &
                      c_associated(view%s0%forces), c_associated(view%s1%forces), &
                      c_associated(view%s1%material_properties), c_associated(view%s0%internal_state_variables), &
                      c_associated(view%s1%internal_state_variables)])) then
-         status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+         report = mud_report(MUD_NULL_ARGUMENT, MUD_ON_ARGUMENT, pnewdt=SMALLEST_CUT)
          return
       end if
       call c_f_pointer(view%k, point%k, [1])
@@ -321,8 +327,6 @@ contains
       call c_f_pointer(view%s1%gradients, point%gradient1, [n_forces])
       call c_f_pointer(view%s0%forces, point%force0, [n_forces])
       call c_f_pointer(view%s1%forces, point%force1, [n_forces])
-      call c_f_pointer(view%s1%material_properties, point%props, [NPROPS_BASE])
-      call c_f_pointer(view%s0%internal_state_variables, point%state0, [NSTATV])
-      call c_f_pointer(view%s1%internal_state_variables, point%state1, [NSTATV])
+      call c_f_pointer(view%s1%material_properties, point%props, [fewest_props()])
    end subroutine find_arrays
 end module mud_mfront

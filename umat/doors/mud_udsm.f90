@@ -4,24 +4,17 @@
 !> stress. Texts are Pascal's: a byte with the length, then the letters, into 256 bytes of the host. An increment cannot
 !> be cut by such a host, so a hard one is taken in pieces.
 module mud_udsm
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_associated, c_f_pointer
-   use mud_arguments, only: has_past
-   use mud_kernel, only: report_t, output_t, kernel_point, kernel_init, failed_report
-   use mud_kinds, only: wp
-   use mud_params, only: params_t, read_params, completed
-   use mud_pieces, only: update_in_pieces
-   use mud_refusals, only: place_t, say_refusal, remark_on_props, remark_on_start, remark_on_end, save_if_asked
-   use mud_registry, only: NPROPS_BASE, &
-      NSTATV => NSTATV_BASE, PROPERTIES, VARIABLES, statev_name, statev_variable, &
-      S_LAYOUT, S_VOID_RATIO, S_SUCTION, S_OPEN, S_EPS_Q_P_TOTAL
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
-   use mud_tensor, only: is_finite
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
+   use mud_door, only: ORDER, place_of, props_at, statev_at, fewest_props, prepare
+   use mud_interface, only: mud_report, mud_blocks, mud_place, mud_prepared_size, mud_prepared_statev, &
+      mud_default_props, mud_increment_at, mud_refuse, mud_text, MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_UNIT, MUD_OK, &
+      MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_ON_ARGUMENT, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_IN_PIECES
    implicit none (type, external)
    private
    public :: user_mod, model_count, model_name, param_count, param_name, param_unit, state_count, state_name, state_unit
 
-   integer, parameter :: ORDER(6) = [1, 2, 3, 4, 6, 5]   !< Order of the host's components; its own inverse.
-   integer, parameter :: ELASTIC = 1                     !< Tangent kind.
+   integer, parameter :: wp = c_double
    integer, parameter :: BEGIN_STATE = 1, STRESSES = 2, STIFFNESS = 3, HOW_MANY = 4, ATTRIBUTES = 5, &
                          ELASTIC_STIFFNESS = 6
    integer(c_int), parameter :: TENSION_POINT = 2, HARDENING_POINT = 5   !< Values of IPL.
@@ -31,6 +24,12 @@ module mud_udsm
    real(wp), parameter :: NO_STRESS = 1.0e-6_wp
    integer, parameter :: LONGEST = 255
 
+   !> Material and point of a call.
+   type :: soil_t
+      type(mud_place) :: place
+      real(c_double), pointer, contiguous :: material(:) => null(), props(:) => null(), state(:) => null()
+      real(wp) :: stress(6) = 0.0_wp, suction = 0.0_wp
+   end type soil_t
 contains
    !> IDTASK 1 initial state variables into STVAR0, 2 stresses, 3 stiffness, 4 number of state variables, 5 kind of
    !> stiffness, 6 elastic stiffness. IABORT 1 where a task fails; a sentence says why. Stress and stiffness in the unit
@@ -44,23 +43,25 @@ contains
                             swp, stvar, ipl, iprjdir, iprjlen
       real(c_double), intent(inout) :: bulkw
       integer(c_int), intent(inout) :: nstat, nonsym, istrsdep, itimedep, itang, iabort
-      type(report_t) :: report
-      type(params_t) :: par
-      type(place_t) :: place
+      type(soil_t) :: soil
+      type(mud_report) :: report
+      real(c_double), target :: material(mud_prepared_size())
+      integer(c_int) :: code
 
       iabort = 0
-      place = place_t('user_mod_', istep, iter, iel, int)
-      call check(idtask, imod, props, sig0, stvar0, par, report)
+      soil%place = place_of('user_mod_', istep, iter, iel, int)
+      soil%material => material
+      call check(idtask, imod, props, sig0, stvar0, soil, report)
       if (report%status == MUD_OK) then
          select case (idtask)
          case (BEGIN_STATE)
-            call initialise(par, props, sig0, stvar0, place, report)
+            call initialise(soil, report)
          case (STRESSES)
-            call stresses_of(par, isundr, props, sig0, swp0, stvar0, deps, bulkw, sig, swp, stvar, ipl, place, report)
+            call stresses_of(soil, isundr, swp0, deps, bulkw, sig, swp, stvar, ipl, report)
          case (STIFFNESS, ELASTIC_STIFFNESS)
-            call stiffness_of(par, idtask, isundr, sig0, stvar0, deps, d, bulkw, report)
+            call stiffness_of(soil, idtask, isundr, deps, d, bulkw, report)
          case (HOW_MANY)
-            nstat = NSTATV
+            call state_count(imod, nstat)
          case (ATTRIBUTES)
             nonsym = 1
             istrsdep = 1
@@ -70,7 +71,7 @@ contains
       end if
       if (report%status /= MUD_OK) then
          iabort = 1
-         call say_refusal(report, place, '. IABORT is 1')
+         code = mud_refuse(soil%place, report, '. IABORT is 1'//c_null_char, n=0_c_int)
       end if
 
       ! What the model does not use.
@@ -80,91 +81,78 @@ contains
    end subroutine user_mod
 
    !> The task is known, the model is 1, PROPS are good. Tasks 4 and 5 need no arrays.
-   subroutine check(idtask, imod, props, sig0, stvar0, par, report)
+   subroutine check(idtask, imod, props, sig0, stvar0, soil, report)
       integer(c_int), intent(in) :: idtask, imod
       type(c_ptr), intent(in) :: props, sig0, stvar0
-      type(params_t), intent(out) :: par
-      type(report_t), intent(out) :: report
-      real(c_double), pointer, contiguous :: values(:)
-      type(mud_status_t) :: status
+      type(soil_t), intent(inout) :: soil
+      type(mud_report), intent(out) :: report
 
       if (idtask < BEGIN_STATE .or. idtask > ELASTIC_STIFFNESS) then
-         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(idtask, wp))
+         report = mud_report(MUD_BAD_OPTION, MUD_ON_ARGUMENT, value=real(idtask, wp))
       else if (imod /= 1) then
-         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(imod, wp))
+         report = mud_report(MUD_BAD_OPTION, MUD_ON_ARGUMENT, value=real(imod, wp))
       else if (idtask /= HOW_MANY .and. idtask /= ATTRIBUTES) then
          if (c_associated(props) .and. c_associated(sig0) .and. c_associated(stvar0)) then
-            call c_f_pointer(props, values, [NPROPS_BASE])
-            call read_params(values, par, status)
+            call c_f_pointer(props, soil%props, [fewest_props()])
+            call prepare(soil%props, soil%material, report)
+            if (report%status /= MUD_OK) return
+            soil%stress = read_six(sig0)
+            call c_f_pointer(stvar0, soil%state, [mud_prepared_statev(soil%material)])
+            soil%suction = soil%state(statev_at('suction'))
          else
-            status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+            report = mud_report(MUD_NULL_ARGUMENT, MUD_ON_ARGUMENT)
          end if
       end if
-      report = failed_report(status)
    end subroutine check
 
    !> A state that has begun stays. Without a stress (hosts ask before they know it) the first update begins it.
-   subroutine initialise(par, props, sig0, stvar0, place, report)
-      type(params_t), intent(in) :: par
-      type(c_ptr), intent(in) :: props, sig0, stvar0
-      type(place_t), intent(in) :: place
-      type(report_t), intent(inout) :: report
-      real(c_double), pointer, contiguous :: values(:), state(:)
-      real(wp) :: stress(6)
+   subroutine initialise(soil, report)
+      type(soil_t), intent(inout) :: soil
+      type(mud_report), intent(inout) :: report
+      real(wp) :: lifted(6), begun(size(soil%state))
+      integer(c_int) :: code
 
-      call c_f_pointer(props, values, [NPROPS_BASE])
-      call remark_on_props(completed(values), place)
-      stress = read_six(sig0)
-      if (.not. all(is_finite(stress))) return   ! said by the update
-      if (abs(sum(stress(1:3))) <= 3.0_wp*NO_STRESS*par%p_atm) return
-      call c_f_pointer(stvar0, state, [NSTATV])
-      if (.not. is_finite(state(S_LAYOUT))) return
-      if (abs(state(S_LAYOUT)) > 0.0_wp) return
-      call remark_on_start(par, stress, state, state(S_SUCTION), place)
-      call kernel_init(values, stress, state(S_SUCTION), state(S_VOID_RATIO), state, report)
+      if (.not. all(ieee_is_finite(soil%stress))) return   ! said by the update
+      if (abs(sum(soil%stress(1:3))) <= 3.0_wp*NO_STRESS*soil%props(props_at('p_atm'))) return
+      code = mud_increment_at(soil%place, soil%material, soil%stress, soil%state, size(soil%state), soil%suction, &
+                              suction=soil%suction, tangent=MUD_TANGENT_NONE, stress1=lifted, statev1=begun, &
+                              report=report)
+      if (code == MUD_OK) soil%state = begun
    end subroutine initialise
 
    !> SIG, STVAR, SWP and IPL at the end of the increment; on failure all four stay. Suction is that of the state.
-   subroutine stresses_of(par, isundr, props, sig0, swp0, stvar0, deps, bulkw, sig, swp, stvar, ipl, place, report)
-      type(params_t), intent(in) :: par
+   subroutine stresses_of(soil, isundr, swp0, deps, bulkw, sig, swp, stvar, ipl, report)
+      type(soil_t), intent(in) :: soil
       integer(c_int), intent(in) :: isundr
-      type(c_ptr), intent(in) :: props, sig0, swp0, stvar0, deps, sig, swp, stvar, ipl
+      type(c_ptr), intent(in) :: swp0, deps, sig, swp, stvar, ipl
       real(c_double), intent(in) :: bulkw
-      type(place_t), intent(in) :: place
-      type(report_t), intent(inout) :: report
-      type(output_t) :: output
-      real(c_double), pointer, contiguous :: values(:), state0(:), state1(:), stress(:)
+      type(mud_report), intent(inout) :: report
+      real(c_double), pointer, contiguous :: state(:), host(:)
       real(c_double), pointer :: pore0, pore
       integer(c_int), pointer :: plastic
-      real(wp) :: stress0(6), strain(6)
+      real(wp) :: strain(6), stress(6), sheared
+      integer(c_int) :: code
+      integer :: total
 
       if (.not. (c_associated(deps) .and. c_associated(sig) .and. c_associated(stvar))) then
-         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
+         report = mud_report(MUD_NULL_ARGUMENT, MUD_ON_ARGUMENT)
          return
       end if
-      stress0 = read_six(sig0)
       strain = read_six(deps)
-      call c_f_pointer(stvar0, state0, [NSTATV])
-      call remark_on_start(par, stress0, state0, state0(S_SUCTION), place)
-      call update_in_pieces(par, stress0, state0, strain, state0(S_SUCTION), 0.0_wp, 0, output, report)
-      if (report%status /= MUD_OK) then
-         call c_f_pointer(props, values, [NPROPS_BASE])
-         call save_if_asked(completed(values), stress0, state0, strain, state0(S_SUCTION), 0.0_wp, place, report)
-         return
-      end if
-      call c_f_pointer(props, values, [NPROPS_BASE])
-      if (.not. has_past(state0)) call remark_on_props(completed(values), place)
-      call remark_on_end(output%stress, output%statev, place)
+      total = statev_at('eps_q_p_total')
+      sheared = soil%state(total)
+      call c_f_pointer(stvar, state, [size(soil%state)])
+      code = mud_increment_at(soil%place, soil%material, soil%stress, soil%state, size(soil%state), soil%suction, &
+                              strain, soil%suction, MUD_TANGENT_NONE + MUD_IN_PIECES, stress, state, report=report)
+      if (code /= MUD_OK) return
       if (c_associated(ipl)) then
          call c_f_pointer(ipl, plastic)
          plastic = 0
-         if (output%statev(S_EPS_Q_P_TOTAL) > state0(S_EPS_Q_P_TOTAL)) plastic = HARDENING_POINT
-         if (output%statev(S_OPEN) > 0.5_wp) plastic = TENSION_POINT
+         if (state(total) > sheared) plastic = HARDENING_POINT
+         if (state(statev_at('open')) > 0.5_wp) plastic = TENSION_POINT
       end if
-      call c_f_pointer(sig, stress, [6])
-      stress = output%stress(ORDER)
-      call c_f_pointer(stvar, state1, [NSTATV])
-      state1 = output%statev(:NSTATV)
+      call c_f_pointer(sig, host, [6])
+      host = stress(ORDER)
       if (.not. (c_associated(swp0) .and. c_associated(swp))) return
       call c_f_pointer(swp0, pore0)
       call c_f_pointer(swp, pore)
@@ -174,44 +162,39 @@ contains
 
    !> D by columns: that of the increment as `tangent` of PROPS says (elastic where it says none, or where the increment
    !> fails, which task 2 reports), or elastic. Undrained soil is given the bulk modulus of its water.
-   subroutine stiffness_of(par, idtask, isundr, sig0, stvar0, deps, d, bulkw, report)
-      type(params_t), intent(in) :: par
+   subroutine stiffness_of(soil, idtask, isundr, deps, d, bulkw, report)
+      type(soil_t), intent(in) :: soil
       integer(c_int), intent(in) :: idtask, isundr
-      type(c_ptr), intent(in) :: sig0, stvar0, deps, d
+      type(c_ptr), intent(in) :: deps, d
       real(c_double), intent(inout) :: bulkw
-      type(report_t), intent(inout) :: report
-      type(output_t) :: output, at_rest
-      real(c_double), pointer, contiguous :: state0(:), matrix(:, :)
-      real(wp) :: stress0(6), still(6), bulk, shear
-      logical :: as_elastic
+      type(mud_report), intent(inout) :: report
+      type(mud_blocks) :: slopes, at_rest
+      real(c_double), pointer, contiguous :: matrix(:, :)
+      real(wp) :: still(6), stress(6), state(size(soil%state)), bulk, shear
+      integer(c_int) :: code
+      integer :: kind
 
       if (.not. c_associated(d)) then
-         report = failed_report(fail(MUD_NULL_ARGUMENT, ON_ARGUMENT))
+         report = mud_report(MUD_NULL_ARGUMENT, MUD_ON_ARGUMENT)
          return
       end if
-      stress0 = read_six(sig0)
       still = 0.0_wp
-      call c_f_pointer(stvar0, state0, [NSTATV])
-      call kernel_point(par, stress0, state0, still, state0(S_SUCTION), 0.0_wp, ELASTIC, at_rest, report)
-      if (report%status /= MUD_OK) return
+      code = mud_increment_at(soil%place, soil%material, soil%stress, soil%state, size(soil%state), soil%suction, &
+                              still, soil%suction, MUD_TANGENT_ELASTIC, stress, state, at_rest, report)
+      if (code /= MUD_OK) return
       if (isundr == 1) then
          bulk = (at_rest%dsig_deps(1, 1) + 2.0_wp*at_rest%dsig_deps(1, 2))/3.0_wp
          shear = at_rest%dsig_deps(4, 4)
          bulkw = max(2.0_wp*shear*(1.0_wp + UNDRAINED)/(3.0_wp*(1.0_wp - 2.0_wp*UNDRAINED)) - bulk, 0.0_wp)
       end if
+      kind = nint(soil%props(props_at('tangent')))
+      slopes = at_rest
+      ! On failure the slopes stay.
+      if (idtask == STIFFNESS .and. kind >= MUD_TANGENT_ELASTIC .and. c_associated(deps)) &
+         code = mud_increment_at(soil%place, soil%material, soil%stress, soil%state, size(soil%state), soil%suction, &
+                                 read_six(deps), soil%suction, kind + MUD_IN_PIECES, stress, state, slopes)
       call c_f_pointer(d, matrix, [6, 6])
-      as_elastic = idtask == ELASTIC_STIFFNESS .or. par%tangent < ELASTIC .or. .not. c_associated(deps)
-      if (.not. as_elastic) then
-         call update_in_pieces(par, stress0, state0, read_six(deps), state0(S_SUCTION), 0.0_wp, par%tangent, output, &
-                               report)
-         as_elastic = report%status /= MUD_OK
-         report = failed_report(mud_status_t())
-      end if
-      if (as_elastic) then
-         matrix = at_rest%dsig_deps(ORDER, ORDER)
-      else
-         matrix = output%dsig_deps(ORDER, ORDER)
-      end if
+      matrix = slopes%dsig_deps(ORDER, ORDER)
    end subroutine stiffness_of
 
    !> Number of models: 1.
@@ -235,7 +218,7 @@ contains
       integer(c_int), intent(in) :: imod
       integer(c_int), intent(out) :: n
 
-      n = merge(NPROPS_BASE, 0, imod == 1)
+      n = merge(fewest_props(), 0, imod == 1)
    end subroutine param_count
 
    !> Name of parameter i from 1, empty if there is none.
@@ -243,8 +226,7 @@ contains
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: name(*)
 
-      call put_pascal('', name)
-      if (known(imod, i, NPROPS_BASE)) call put_pascal(PROPERTIES(i)%name, name)
+      call put_pascal(text_of(imod, MUD_PROPS, i, MUD_NAME), name)
    end subroutine param_name
 
    !> Unit of parameter i from 1 in the letters of PLAXIS, empty if there is none.
@@ -252,16 +234,21 @@ contains
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: unit(*)
 
-      call put_pascal('', unit)
-      if (known(imod, i, NPROPS_BASE)) call put_pascal(unit_word(PROPERTIES(i)%unit), unit)
+      call put_pascal(unit_word(text_of(imod, MUD_PROPS, i, MUD_UNIT)), unit)
    end subroutine param_unit
 
    !> Number of state variables of a model, 0 if imod is not 1.
    subroutine state_count(imod, n) bind(c, name='getstatevarcount_')
       integer(c_int), intent(in) :: imod
       integer(c_int), intent(out) :: n
+      real(c_double) :: material(mud_prepared_size()), props(mud_prepared_size())   ! PROPS are kept in it
+      type(mud_report) :: report
 
-      n = merge(NSTATV, 0, imod == 1)
+      n = 0
+      if (imod /= 1) return
+      n = mud_default_props(props, fewest_props())
+      call prepare(props(:fewest_props()), material, report)
+      n = mud_prepared_statev(material)
    end subroutine state_count
 
    !> Name of state variable i from 1, empty if there is none.
@@ -269,8 +256,7 @@ contains
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: name(*)
 
-      call put_pascal('', name)
-      if (known(imod, i, NSTATV)) call put_pascal(statev_name(i), name)
+      call put_pascal(text_of(imod, MUD_STATEV, i, MUD_NAME), name)
    end subroutine state_name
 
    !> Unit of state variable i from 1 in the letters of PLAXIS, empty if there is none.
@@ -278,16 +264,27 @@ contains
       integer(c_int), intent(in) :: imod, i
       character(kind=c_char), intent(inout) :: unit(*)
 
-      call put_pascal('', unit)
-      if (known(imod, i, NSTATV)) call put_pascal(unit_word(VARIABLES(statev_variable(i))%unit), unit)
+      call put_pascal(unit_word(text_of(imod, MUD_STATEV, i, MUD_UNIT)), unit)
    end subroutine state_unit
 
-   pure logical function known(imod, i, n)
-      integer(c_int), intent(in) :: imod, i
-      integer, intent(in) :: n
+   !> Field of an entry of PROPS or STATEV, empty if a model without hysteresis does not have it.
+   function text_of(imod, list, i, field) result(text)
+      integer(c_int), intent(in) :: imod, list, i, field
+      character(LONGEST) :: text
+      character(kind=c_char) :: letters(LONGEST + 1)
+      integer(c_int) :: n
+      integer :: k
 
-      known = imod == 1 .and. i >= 1 .and. i <= n
-   end function known
+      text = ''
+      if (list == MUD_PROPS) call param_count(imod, n)
+      if (list == MUD_STATEV) call state_count(imod, n)
+      if (i < 1 .or. i > n) return
+      if (mud_text(list, i - 1, field, letters, size(letters)) /= MUD_OK) return
+      do k = 1, LONGEST
+         if (letters(k) == c_null_char) return
+         text(k:k) = letters(k)
+      end do
+   end function text_of
 
    !> Units in the letters that PLAXIS replaces by those of the project: F force, L length; - for none.
    pure function unit_word(unit) result(word)
