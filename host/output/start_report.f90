@@ -9,7 +9,7 @@ module start_report
    use start_findings, only: balance_t
    use model_types, only: model_t
    use run_cost, only: size_of_run
-   use run_observer, only: observers_t
+   use run_observer, only: observers_t, news_t, FITS
    use run_state, only: run_t, act_contacts
    use scene_types, only: scene_t
    use scene_warnings, only: list_warnings
@@ -30,6 +30,8 @@ contains
       character(WARNING_LENGTH), allocatable :: doubts(:)
       type(balance_t) :: balance
       type(contact_alarm_t) :: contacts
+      type(news_t) :: news
+      type(fault_t) :: none
       integer :: i
 
       if (.not. quiet) call announce(model, run, verbose)
@@ -43,7 +45,8 @@ contains
       end do
       if (.not. only_check) return
       call act_contacts(model, model%stages(1), run%system%contacts)
-      call contacts%stage_begins(model, run, 1)
+      news%stage = 1
+      call contacts%stage_begins(model, run, news, none)
    end subroutine report_start
 
    !> Says what is going to run.
@@ -72,14 +75,15 @@ contains
    !> fit.
    subroutine report_restart(model, run, observers, restart, folder, quiet, fault)
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      type(observers_t), intent(in) :: observers
+      type(run_t), intent(inout) :: run
+      type(observers_t), intent(inout) :: observers
       character(*), intent(in) :: restart, folder   !< Path of the checkpoint, empty: none; folder of the results.
       logical, intent(in) :: quiet
       type(fault_t), intent(inout) :: fault
+      type(news_t) :: news
 
       if (restart == '') return
-      call observers%check_fit(model, run, fault)
+      call observers%tell(FITS, model, run, news, fault)
       if (fault%code /= 0 .or. quiet) return
       write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
          ', step '//whole(run%at%step)//', time '//short(run%state%time)// &
