@@ -12,10 +12,9 @@ module start_report
    use run_observer, only: observers_t, news_t, FITS
    use run_state, only: run_t, act_contacts
    use scene_types, only: scene_t
-   use scene_warnings, only: list_warnings
+   use scene_warnings, only: warn_of_scene
    use start_balance, only: find_imbalance
    use texts, only: short, whole
-   use warnings, only: print_warning, WARNING_LENGTH
    implicit none (type, external)
    private
    public :: report_start, report_restart
@@ -27,22 +26,17 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run   !< The contacts are probed.
       logical, intent(in) :: quiet, verbose, only_check
-      character(WARNING_LENGTH), allocatable :: doubts(:)
       type(balance_t) :: balance
       type(contact_alarm_t) :: contacts
       type(news_t) :: news
       type(fault_t) :: none
-      integer :: i
 
       if (.not. quiet) call announce(model, run, verbose)
       call find_imbalance(model, run, balance)
       if (.not. quiet .and. balance%known) write (output_unit, '(a)') 'Start: at most '//short(balance%stress)// &
          ' kPa without balance, at ('//short(balance%x(1))//', '//short(balance%x(2))//') m; the stress there is '// &
          short(balance%there)//' kPa.'
-      call list_warnings(scene, model, run%tension, balance, doubts)
-      do i = 1, size(doubts)
-         call print_warning(doubts(i))
-      end do
+      call warn_of_scene(scene, model, run%tension, balance)
       if (.not. only_check) return
       call act_contacts(model, model%stages(1), run%system%contacts)
       news%stage = 1
