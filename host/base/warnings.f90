@@ -4,9 +4,7 @@ module warnings
    use, intrinsic :: iso_fortran_env, only: error_unit
    implicit none (type, external)
    private
-   public :: add_warning, print_warning, repeat_warnings, WARNING_LENGTH
-
-   integer, parameter :: WARNING_LENGTH = 500
+   public :: print_warning, repeat_warnings
 
    type :: text_t
       character(:), allocatable :: text
@@ -14,21 +12,6 @@ module warnings
 
    type(text_t), allocatable :: printed(:)   !< By this process.
 contains
-   !> Adds a text to a list.
-   subroutine add_warning(text, list)
-      character(*), intent(in) :: text
-      character(WARNING_LENGTH), allocatable, intent(inout) :: list(:)   !< List that grows by one. (warnings)
-      character(WARNING_LENGTH), allocatable :: more(:)
-      integer :: n
-
-      n = 0
-      if (allocated(list)) n = size(list)
-      allocate (more(n + 1))
-      if (n > 0) more(:n) = list
-      more(n + 1) = text
-      call move_alloc(more, list)
-   end subroutine add_warning
-
    !> A line on standard error, which a quiet run prints as well.
    subroutine print_warning(text)
       character(*), intent(in) :: text

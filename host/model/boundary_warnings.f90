@@ -3,36 +3,34 @@
 module boundary_warnings
    use kinds, only: wp
    use given_pressures, only: nodes_with_flow, edges_with_flow
-   use warnings, only: add_warning, WARNING_LENGTH
+   use warnings, only: print_warning
    use model_types, only: model_t, action_t, fix_t
    use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
    implicit none (type, external)
    private
-   public :: list_boundary_warnings
+   public :: warn_of_boundaries
 
    real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of a prescribed value.
    real(wp), parameter :: AT_ONCE = 1.0e-3_wp    !< Share of the range of a history that is no sudden load.
 
    character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
 contains
-   !> Adds all of them to a list. Raises no fault.
-   subroutine list_boundary_warnings(model, warnings)
+   !> Prints all of them.
+   subroutine warn_of_boundaries(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
 
-      call look_at_fixes(model, warnings)
-      call look_at_slopes(model, warnings)
-      call look_at_inflows(model, warnings)
-      call look_at_histories(model, warnings)
-      call look_at_places(model, warnings)
-   end subroutine list_boundary_warnings
+      call look_at_fixes(model)
+      call look_at_slopes(model)
+      call look_at_inflows(model)
+      call look_at_histories(model)
+      call look_at_places(model)
+   end subroutine warn_of_boundaries
 
    !> Two that prescribe an unknown of a stage differently: the later one applies; and p_w, p_c and p_a all at once.
-   subroutine look_at_fixes(model, warnings)
+   subroutine look_at_fixes(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       integer, allocatable :: by(:, :)
       integer :: i, j, s, n, node
 
@@ -52,11 +50,11 @@ contains
                                    any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
                                    node=1, size(nodes))], .true., dim=1)
                      if (n == 0) cycle before
-                     call add_warning(place_of(one)//WORDS(one%field)//' of the node at ('// &
+                     call print_warning(place_of(one)//WORDS(one%field)//' of the node at ('// &
                         short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
                         ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
                         trim(model%fixes(j)%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
-                        'values; the later one counts.', warnings)
+                        'values; the later one counts.')
                   end associate
                   cycle before
                end do
@@ -70,9 +68,8 @@ contains
                by(model%fixes(i)%field, model%domain%mesh%groups(model%fixes(i)%group)%nodes) = i
          end do
          node = findloc(all(by(AT_P_W:, :) > 0, dim=1), .true., dim=1)
-         if (node > 0) call add_warning(place_of(model%fixes(maxval(by(:, node))))//'p_w, p_c and p_a of a node '// &
-            'are all prescribed in stage '//trim(model%stages(s)%name)//'; p_a = p_w + p_c, so give two of them.', &
-            warnings)
+         if (node > 0) call print_warning(place_of(model%fixes(maxval(by(:, node))))//'p_w, p_c and p_a of a node '// &
+            'are all prescribed in stage '//trim(model%stages(s)%name)//'; p_a = p_w + p_c, so give two of them.')
       end do
    contains
       pure logical function differ(a, b, z)
@@ -92,9 +89,8 @@ contains
    end subroutine look_at_fixes
 
    !> Pressures of water that grow upwards, where weight makes them grow downwards.
-   subroutine look_at_slopes(model, warnings)
+   subroutine look_at_slopes(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(*), parameter :: REMEDY = ' kPa/m grows upwards; in water at rest p_w grows downwards, by -rho_w g '// &
                                           '(-9.81 kPa/m).'
       integer :: i
@@ -102,22 +98,20 @@ contains
       if (.not. (model%domain%with_w .and. model%domain%gravity > 0.0_wp)) return
       do i = 1, size(model%initials)
          associate (one => model%initials(i))
-            if (one%p_w_slope > 0.0_wp) call add_warning(place_of(one)//'p_w_slope = '//short(one%p_w_slope)//REMEDY, &
-                                                        warnings)
+            if (one%p_w_slope > 0.0_wp) call print_warning(place_of(one)//'p_w_slope = '//short(one%p_w_slope)//REMEDY)
          end associate
       end do
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i))
-            if (one%field == AT_P_W .and. one%value_slope > 0.0_wp) call add_warning(place_of(one)//'value_slope = '// &
-               short(one%value_slope)//' of p_w'//REMEDY, warnings)
+            if (one%field == AT_P_W .and. one%value_slope > 0.0_wp) call print_warning(place_of(one)// &
+               'value_slope = '//short(one%value_slope)//' of p_w'//REMEDY)
          end associate
       end do
    end subroutine look_at_slopes
 
    !> Inflows through edges with a prescribed pressure, which takes them up: they do nothing.
-   subroutine look_at_inflows(model, warnings)
+   subroutine look_at_inflows(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       logical :: taken(size(model%domain%mesh%x, 2))
       integer :: e, i, s, lost
 
@@ -137,10 +131,10 @@ contains
                end if
                lost = count([(all(taken(edges(:2, e))), e=1, size(edges, 2))])
                if (lost == 0) cycle
-               call add_warning(place_of(one)//'the inflow has no effect on '//whole(lost)//' of the '// &
+               call print_warning(place_of(one)//'the inflow has no effect on '//whole(lost)//' of the '// &
                   whole(size(edges, 2))//' edges of '''//trim(one%group_name)//''' in stage '// &
                   trim(model%stages(s)%name)//': a &fix prescribes the pressure of '// &
-                  trim(merge('air  ', 'water', one%kind == LOAD_AIR))//' there.', warnings)
+                  trim(merge('air  ', 'water', one%kind == LOAD_AIR))//' there.')
                exit
             end do
          end associate
@@ -166,9 +160,8 @@ contains
    end function has_given
 
    !> Histories of which a part lies before what they act on: times are those of the run, not of the stage.
-   subroutine look_at_histories(model, warnings)
+   subroutine look_at_histories(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       integer :: i
 
       do i = 1, size(model%actions)
@@ -200,38 +193,36 @@ contains
             factor = amplitude_at(h, start)
             if (.not. any(h%times < start .and. &
                           abs(h%values - factor) > AT_ONCE*(maxval(h%values) - minval(h%values)))) return
-            call add_warning(place_of(item)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))// &
+            call print_warning(place_of(item)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))// &
                ' s, and this acts from '//short(start)//' s on, at once with the factor '//short(factor)// &
                trim(merge(', which then stays; ', ';                   ', h%times(size(h%times)) <= start))// &
-               ' times of a &history are those of the run, not of a stage: its key stages counts them from stages.', &
-               warnings)
+               ' times of a &history are those of the run, not of a stage: its key stages counts them from stages.')
          end associate
       end subroutine look
    end subroutine look_at_histories
 
    !> Supports of pressures and inflows that act on a part of their group alone.
-   subroutine look_at_places(model, warnings)
+   subroutine look_at_places(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       logical :: flows(size(model%domain%mesh%x, 2))
       integer :: i
 
       flows = nodes_with_flow(model%domain)
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-            if (one%field > DISPLACEMENTS .and. .not. all(flows(nodes))) call add_warning(place_of(one)// &
+            if (one%field > DISPLACEMENTS .and. .not. all(flows(nodes))) call print_warning(place_of(one)// &
                trim(WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
                whole(size(nodes))//' nodes of '''//trim(one%group_name)//''': the others lie in no region with '// &
-               'drainage = ''coupled''.', warnings)
+               'drainage = ''coupled''.')
          end associate
       end do
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
             if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
             associate (edges => edges_with_flow(model%domain, one%group))
-               if (.not. all(edges)) call add_warning(place_of(one)//'fluid flows in through '//whole(count(edges))// &
-                  ' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)//''': the others belong to '// &
-                  'no region with drainage = ''coupled''.', warnings)
+               if (.not. all(edges)) call print_warning(place_of(one)//'fluid flows in through '// &
+                  whole(count(edges))//' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)// &
+                  ''': the others belong to no region with drainage = ''coupled''.')
             end associate
          end associate
       end do

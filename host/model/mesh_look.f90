@@ -4,7 +4,7 @@ module mesh_look
    use kinds, only: wp
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
-   use warnings, only: add_warning, WARNING_LENGTH
+   use warnings, only: print_warning
    use model_types, only: model_t, action_t
    use scene_parts, only: place_of
    use texts, only: short, whole
@@ -50,9 +50,8 @@ contains
    end subroutine check_carried
 
    !> Warns of boundary nodes at one place that no contact, tie or plate joins.
-   subroutine look_at_slits(model, warnings)
+   subroutine look_at_slits(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
       integer, allocatable :: outer(:)
       real(wp) :: near
       integer :: i, k, pairs, first
@@ -71,10 +70,10 @@ contains
                pairs = pairs + 1
             end do
          end do
-         if (pairs > 0) call add_warning('The mesh has '//whole(pairs)//' pairs of boundary nodes at one place '// &
+         if (pairs > 0) call print_warning('The mesh has '//whole(pairs)//' pairs of boundary nodes at one place '// &
             'that nothing joins, the first at ('//short(x(1, first))//', '//short(x(2, first))//') m: the ground '// &
             'is slit there. Merge them (Coherence in Gmsh, or gmsh.model.mesh.removeDuplicateNodes()), or give a '// &
-            '&contact or &tie between the two sides.', warnings)
+            '&contact or &tie between the two sides.')
       end associate
    end subroutine look_at_slits
 

@@ -6,7 +6,7 @@ module start_look
    use generalised_alpha, only: has_rates, has_inertia
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
-   use warnings, only: add_warning, WARNING_LENGTH
+   use warnings, only: print_warning
    use start_findings, only: balance_t
    use model_types, only: model_t, fix_t, plate_t
    use scene_parts, only: acts_in, amplitude_t, place_of, scene_item_t, LOAD_AIR, PRESCRIBED_P_A
@@ -14,37 +14,35 @@ module start_look
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: list_start_warnings
+   public :: warn_of_start
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< Of a pressure.
    real(wp), parameter :: AT_ONCE = 0.05_wp      !< Share of the largest velocity of a motion: no start from rest.
    real(wp), parameter :: HARD = 1.0e4_wp        !< [kPa] Of a plate; above it a force in N is likely.
    real(wp), parameter :: BRIEF = 0.1_wp         !< Share of the time before a stage that a pulse lasts.
 contains
-   !> Adds all of them to a list. Raises no fault.
-   subroutine list_start_warnings(model, balance, warnings)
+   !> Prints all of them.
+   subroutine warn_of_start(model, balance)
       type(model_t), intent(in) :: model
       type(balance_t), intent(in) :: balance
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
       integer :: i
 
-      call look_at_balance(model, balance, warnings)
-      call look_at_air(model, warnings)
-      call look_at_water_outside(model, warnings)
+      call look_at_balance(model, balance)
+      call look_at_air(model)
+      call look_at_water_outside(model)
       do i = 1, size(model%fixes)
-         call look_at_motion(model, model%fixes(i), warnings)
+         call look_at_motion(model, model%fixes(i))
       end do
       do i = 1, size(model%plates)
-         call look_at_plate(model, model%plates(i), warnings)
+         call look_at_plate(model, model%plates(i))
       end do
-      call look_at_pulses(model, warnings)
-   end subroutine list_start_warnings
+      call look_at_pulses(model)
+   end subroutine warn_of_start
 
    !> A start that is not in balance. Where no &initial gives a stress, a static stage finds the balance.
-   subroutine look_at_balance(model, balance, warnings)
+   subroutine look_at_balance(model, balance)
       type(model_t), intent(in) :: model
       type(balance_t), intent(in) :: balance
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(:), allocatable :: share, why
       integer :: i
 
@@ -57,16 +55,15 @@ contains
       i = findloc(model%actions%damps, .true., dim=1)
       if (has_inertia(model%stages(1)%kind) .and. i > 0) why = ' The dashpots of '//trim(model%actions(i)%what)// &
          ' hold no weight: find the balance in a static stage with a &fix that is limited to it.'
-      call add_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
+      call print_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
                        short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
                        '. Stage '//trim(model%stages(1)%name)//' begins with what they set free; compare rho_s, '// &
-                       'surface, surcharge, k_0 and p_w with the loads of the start.'//why, warnings)
+                       'surface, surcharge, k_0 and p_w with the loads of the start.'//why)
    end subroutine look_at_balance
 
    !> Air that is not at atmospheric pressure where the pores hold some, though nothing of the scene asks for it.
-   subroutine look_at_air(model, warnings)
+   subroutine look_at_air(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(:), allocatable :: meant
       real(wp) :: worst, p_w, p_c, z
       integer :: i, k
@@ -94,8 +91,8 @@ contains
             meant = meant_by('p_c', -one%p_w, -one%p_w_slope)
             if (.not. (abs(one%p_w) > 0.0_wp .or. abs(one%p_w_slope) > 0.0_wp)) &
                meant = meant_by('p_w', -one%p_c, -one%p_c_slope)
-            call add_warning(place_of(one)//'the air begins with p_a = p_w + p_c = '//short(worst)//' kPa at z = '// &
-               short(z)//' m, and nothing asks for it (0: as outside). Did you mean '//meant//'?', warnings)
+            call print_warning(place_of(one)//'the air begins with p_a = p_w + p_c = '//short(worst)//' kPa at z = '// &
+               short(z)//' m, and nothing asks for it (0: as outside). Did you mean '//meant//'?')
          end associate
       end do
    contains
@@ -110,9 +107,8 @@ contains
    end subroutine look_at_air
 
    !> Water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
-   subroutine look_at_water_outside(model, warnings)
+   subroutine look_at_water_outside(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       logical :: carried(DISPLACEMENTS, size(model%domain%mesh%x, 2)), pressed(size(model%domain%mesh%x, 2))
       real(wp) :: pressure, most
       integer :: i, s, k, bare
@@ -138,10 +134,10 @@ contains
                   most = max(most, pressure)
                end do
                if (bare == 0) cycle
-               call add_warning(place_of(fix)//'water of up to '//short(most)//' kPa stands on '//whole(bare)// &
+               call print_warning(place_of(fix)//'water of up to '//short(most)//' kPa stands on '//whole(bare)// &
                   ' of the '//whole(size(edges, 2))//' edges of '''//trim(fix%group_name)//''' in stage '// &
                   trim(model%stages(s)%name)//', and nothing bears on them: its weight is missing. Add a &load of '// &
-                  'kind = ''pressure'' with the same values, unless water is pressed in there.', warnings)
+                  'kind = ''pressure'' with the same values, unless water is pressed in there.')
                exit
             end do
          end associate
@@ -185,10 +181,9 @@ contains
    end function largest_of
 
    !> A displacement that does not begin from rest in a dynamic stage: what moves at once is struck.
-   subroutine look_at_motion(model, fix, warnings)
+   subroutine look_at_motion(model, fix)
       type(model_t), intent(in) :: model
       type(fix_t), intent(in) :: fix
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       real(wp) :: start, before, after, at_rest
       integer :: s, i
 
@@ -213,10 +208,10 @@ contains
             at_rest = AT_ONCE*abs(fix%value)*maxval(abs((h%values(2:) - h%values(:size(h%values) - 1)) &
                                                         /(h%times(2:) - h%times(:size(h%times) - 1))))
             if (abs(after - before) <= at_rest .or. .not. abs(after - before) > 0.0_wp) cycle
-            call add_warning(place_of(fix)//'the motion of '''//trim(fix%group_name)//''' begins in stage '// &
+            call print_warning(place_of(fix)//'the motion of '''//trim(fix%group_name)//''' begins in stage '// &
                trim(model%stages(s)%name)//' with a velocity of '//short(after)//' m/s, and the ground with '// &
                short(before)//': it is struck. Let history '''//trim(h%name)//''' begin without slope, or '// &
-               'prescribe motion = ''acceleration''.', warnings)
+               'prescribe motion = ''acceleration''.')
             return
          end do
       end associate
@@ -234,10 +229,9 @@ contains
    end function slope_after
 
    !> A force that seems to be in N, and a plate on the ground that nothing presses down.
-   subroutine look_at_plate(model, plate, warnings)
+   subroutine look_at_plate(model, plate)
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       real(wp) :: r(2), area, forces(2)
       integer :: i
 
@@ -255,10 +249,10 @@ contains
       if (plate%amplitude > 0) forces = plate%force*[minval(model%amplitudes(plate%amplitude)%values), &
                                                      maxval(model%amplitudes(plate%amplitude)%values)]
       ! A boundary along z has no area that a vertical force could press on.
-      if (area > 0.0_wp .and. maxval(abs(forces)) > HARD*area) call add_warning(place_of(plate)// &
+      if (area > 0.0_wp .and. maxval(abs(forces)) > HARD*area) call print_warning(place_of(plate)// &
          'the force of the plate '''// &
          trim(plate%name)//''' is '//short(maxval(abs(forces))/area)//' kPa on its '//short(area)//' m2; forces '// &
-         'are in kN.', warnings)
+         'are in kN.')
       if (minval(forces) < 0.0_wp .or. (plate%heavy .and. model%domain%gravity > 0.0_wp)) return
       if (plate%group == 0) then
          if (plate%corners(1, 2) < plate%corners(1, 1)) return
@@ -272,9 +266,8 @@ contains
       do i = 1, size(model%initials)
          if (moves(model%initials(i)%group_name) .and. abs(model%initials(i)%v_z) > 0.0_wp) return
       end do
-      call add_warning(place_of(plate)//'nothing presses the plate '''//trim(plate%name)//''' down: it has no '// &
-         'weight (weight = ''yes'' and gravity), no negative force (force acts upwards), no &fix and no &load.', &
-         warnings)
+      call print_warning(place_of(plate)//'nothing presses the plate '''//trim(plate%name)//''' down: it has no '// &
+         'weight (weight = ''yes'' and gravity), no negative force (force acts upwards), no &fix and no &load.')
    contains
       pure logical function moves(group)
          character(*), intent(in) :: group
@@ -286,9 +279,8 @@ contains
 
    !> A short pulse that is over before the first dynamic stage begins, though what follows it acts there: its times may
    !> be meant from the start of that stage.
-   subroutine look_at_pulses(model, warnings)
+   subroutine look_at_pulses(model)
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(1) :: none(0)
       integer :: i
 
@@ -319,9 +311,9 @@ contains
             if (abs(h%values(n) - h%values(1)) > 0.0_wp .or. .not. any(abs(h%values - h%values(1)) > 0.0_wp)) return
             ! What acts from that stage on alone is told by its first factor.
             if (.not. any([(acts_in(stages, model%stages(i)%name), i=1, s - 1)])) return
-            call add_warning(place_of(item)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &
+            call print_warning(place_of(item)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &
                ' s, before stage '//trim(model%stages(s)%name)//' begins at '//short(start)//' s; times of a '// &
-               '&history are those of the run, not of a stage: its key stages counts them from stages.', warnings)
+               '&history are those of the run, not of a stage: its key stages counts them from stages.')
          end associate
       end subroutine look
    end subroutine look_at_pulses

@@ -5,7 +5,7 @@ module checkpoints
    use archive, only: archive_t
    use archive_file, only: archive_file_t, archive_kind_t, create_archive, open_archive, close_archive
    use run_state, only: run_t, exchange_run
-   use run_observer, only: observer_t, observers_t, slot_t, accepted_step_t
+   use run_observer, only: observer_t, observers_t, slot_t, news_t
    use wall_clock, only: clock
    use interrupts, only: interrupted, EXIT_INTERRUPTED
    use kinds, only: wp
@@ -33,10 +33,11 @@ module checkpoints
    end type checkpoint_observer_t
 contains
    !> Begins to count the time to the first checkpoint.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, model, run, news, fault)
       class(checkpoint_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
+      type(run_t), intent(inout) :: run
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       self%last = clock()
@@ -44,12 +45,11 @@ contains
 
    !> Writes a checkpoint where it is due, and ends a run that is interrupted. A run that is taken up here has no
    !> factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be written; EXIT_INTERRUPTED.
-   subroutine taken_over(self, model, run, done, earlier, fault)
+   subroutine taken_over(self, model, run, news, fault)
       class(checkpoint_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(accepted_step_t), intent(in) :: done
-      type(slot_t), intent(inout) :: earlier(:)
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       logical :: due
 
@@ -59,12 +59,12 @@ contains
          if (seconds > 0.0_wp) due = clock() - self%last >= seconds .or. due
       end associate
       if (due) then
-         call write_checkpoint(self%folder, model, run, earlier, fault)
+         call write_checkpoint(self%folder, model, run, news%earlier, fault)
          self%last = clock()
          run%system%factored = .false.
          run%assembly%slopes%known = .false.
       end if
-      if (fault%code == 0 .and. interrupted() .and. .not. (done%last .and. done%stage == size(model%stages))) &
+      if (fault%code == 0 .and. interrupted() .and. .not. (news%last .and. news%stage == size(model%stages))) &
          call raise(fault, EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to '// &
                     'there are complete; --restart '//self%folder//'/'//CHECKPOINT//' goes on.')
    end subroutine taken_over
@@ -79,14 +79,11 @@ contains
       type(fault_t), intent(inout) :: fault
       type(archive_file_t) :: archive
       logical :: good
-      integer :: i
 
       call create_archive(folder//'/'//CHECKPOINT, KIND_OF_FILE, archive)
       call exchange_scene(folder, model, archive, fault)
       call exchange_run(model, run, archive)
-      do i = 1, size(observers)
-         call observers(i)%observer%exchange(archive)
-      end do
+      call exchange_observers(observers, archive)
       call close_archive(archive, good)
       if (.not. good) call raise(fault, EXIT_OUTPUT, folder//'/'//CHECKPOINT//' cannot be written; is the '// &
                                  'disk full? The one before is untouched: make room and use --restart.')
@@ -107,10 +104,20 @@ contains
       if (fault%code /= 0) return
       call exchange_scene(path, model, archive, fault)
       if (fault%code == 0) call exchange_run(model, run, archive)
-      if (fault%code == 0) call observers%exchange_all(archive)
+      if (fault%code == 0) call exchange_observers(observers%list, archive)
       call close_archive(archive, good)
       if (fault%code == 0 .and. .not. good) call raise(fault, EXIT_RESTART, path//DAMAGED)
    end subroutine read_checkpoint
+
+   subroutine exchange_observers(list, archive)
+      type(slot_t), intent(inout) :: list(:)
+      class(archive_t), intent(inout) :: archive
+      integer :: i
+
+      do i = 1, size(list)
+         call list(i)%observer%exchange(archive)
+      end do
+   end subroutine exchange_observers
 
    !> Exchanges what tells scenes apart. Fault EXIT_RESTART: the archive belongs to another scene, and the first group
    !> that differs is named; or it is damaged.

@@ -8,7 +8,7 @@ module contact_alarm
    use generalised_alpha, only: has_inertia
    use faults, only: fault_t
    use model_types, only: model_t
-   use run_observer, only: observer_t, accepted_step_t
+   use run_observer, only: observer_t, news_t
    use run_state, only: run_t
    use scene_parts, only: acts_in
    use texts, only: short
@@ -35,16 +35,17 @@ module contact_alarm
 contains
    !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
    !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
-   subroutine stage_begins(self, model, run, number)
+   subroutine stage_begins(self, model, run, news, fault)
       class(contact_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      integer, intent(in) :: number
+      type(news_t), intent(inout) :: news
+      type(fault_t), intent(inout) :: fault
 
       if (size(model%contacts) == 0) return
       select type (contacts => run%system%contacts)
       type is (contacts_t)
-         if (contacts%probe(run%state%x)) call warn_of_overlaps(model, contacts%interfaces, run%state%x, number)
+         if (contacts%probe(run%state%x)) call warn_of_overlaps(model, contacts%interfaces, run%state%x, news%stage)
       end select
    end subroutine stage_begins
 
@@ -93,11 +94,11 @@ contains
 
    !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
-   subroutine step(self, model, run, done, fault)
+   subroutine step(self, model, run, news, fault)
       class(contact_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(accepted_step_t), intent(inout) :: done
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       integer :: i
 

@@ -4,7 +4,7 @@
 module convergence_alarm
    use faults, only: fault_t
    use model_types, only: model_t
-   use run_observer, only: observer_t, accepted_step_t
+   use run_observer, only: observer_t, news_t
    use run_state, only: run_t
    use texts, only: short
    use warnings, only: print_warning
@@ -20,24 +20,24 @@ module convergence_alarm
 contains
    !> Tells of both once a stage, on standard error, also where the run is quiet. docs/theory/host.md sections 4.4 and
    !> 5.1.
-   subroutine step(self, model, run, done, fault)
+   subroutine step(self, model, run, news, fault)
       class(convergence_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(accepted_step_t), intent(inout) :: done
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
-      associate (stage => model%stages(done%stage), never => fault)
+      associate (stage => model%stages(news%stage), never => fault)
          if (run%at%step == 1 .and. allocated(run%at%sudden)) &
             call print_warning('stage '//trim(stage%name)//': its loads act at once and the '// &
                'first step did not converge: they are applied evenly over the stage. A material with a '// &
                'memory may answer otherwise than at once; give the loads a &history to say how they grow.')
-         if (self%told == done%stage .or. .not. done%log%stagnated) return
-         self%told = done%stage
+         if (self%told == news%stage .or. .not. news%log%stagnated) return
+         self%told = news%stage
          call print_warning('stage '//trim(stage%name)//', time '//short(run%next%time)// &
-            ' s: Newton''s method stays at an error of '//short(maxval(done%log%error))//' and cannot reach its '// &
-            'tolerance of '//short(done%control%tolerance)//', because stresses are integrated to '// &
-            short(done%control%roughness)//'. The step is accepted. Give &stage a tolerance above the error '// &
+            ' s: Newton''s method stays at an error of '//short(maxval(news%log%error))//' and cannot reach its '// &
+            'tolerance of '//short(news%control%tolerance)//', because stresses are integrated to '// &
+            short(news%control%roughness)//'. The step is accepted. Give &stage a tolerance above the error '// &
             'reached, or the material a smaller one.')
       end associate
    end subroutine step

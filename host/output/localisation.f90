@@ -10,7 +10,7 @@ module localisation
    use kinds, only: wp, PI
    use model_types, only: model_t
    use porous_domain, only: domain_t, model_state_t, is_present, strain_of
-   use run_observer, only: observer_t, accepted_step_t
+   use run_observer, only: observer_t, news_t
    use run_state, only: run_t
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS
@@ -55,10 +55,11 @@ contains
    end subroutine exchange
 
    !> Makes room for the points.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, model, run, news, fault)
       class(localisation_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
+      type(run_t), intent(inout) :: run
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (run%steps == 0) allocate (self%work(size(run%state%e)), source=0.0_wp)
@@ -66,11 +67,11 @@ contains
 
    !> Books a step, gives its share to the ledger, and tells a share above TOLD_SHARE, once, on standard error. Points
    !> are looked at in parallel, and added up in their order.
-   subroutine step(self, model, run, done, fault)
+   subroutine step(self, model, run, news, fault)
       class(localisation_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(accepted_step_t), intent(inout) :: done
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: work(:)
       logical, allocatable :: lost(:)
@@ -96,14 +97,14 @@ contains
       worst = maxloc(self%work, dim=1)
       if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
                                               self%normal)
-      done%localised = self%localised/max(self%shear, tiny(1.0_wp))
-      if (done%localised > TOLD_SHARE .and. .not. self%is_above) then
+      news%localised = self%localised/max(self%shear, tiny(1.0_wp))
+      if (news%localised > TOLD_SHARE .and. .not. self%is_above) then
          self%is_above = .true.
          self%since = run%next%time
       end if
       if (self%told .or. .not. self%is_above) return
       self%told = .true.
-      call tell(self, model%domain, model%stages(done%stage)%name, run%next%time, done%localised, worst)
+      call tell(self, model%domain, model%stages(news%stage)%name, run%next%time, news%localised, worst)
    end subroutine step
 
    !> The points of an element: shear work of the step, where positive, and whether the tangent has lost ellipticity.
@@ -153,14 +154,14 @@ contains
    end subroutine tell
 
    !> Forgets all where displacements begin to count anew.
-   subroutine stage_ends(self, model, run, complete, fault)
+   subroutine stage_ends(self, model, run, news, fault)
       class(localisation_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      logical, intent(in) :: complete
+      type(run_t), intent(inout) :: run
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
-      if (.not. (complete .and. model%stages(run%at%stage)%zero_displacements)) return
+      if (.not. (news%complete .and. model%stages(run%at%stage)%zero_displacements)) return
       self%shear = 0.0_wp
       self%localised = 0.0_wp
       self%work = 0.0_wp

@@ -4,7 +4,7 @@
 module progress_line
    use, intrinsic :: iso_fortran_env, only: output_unit
    use faults, only: fault_t
-   use run_observer, only: observer_t, accepted_step_t, slot_t
+   use run_observer, only: observer_t, news_t
    use run_state, only: run_t
    use wall_clock, only: clock
    use kinds, only: wp
@@ -31,12 +31,11 @@ module progress_line
    end type progress_observer_t
 contains
    !> Shows the step, the share of the stage and the time that is left.
-   subroutine taken_over(self, model, run, done, earlier, fault)
+   subroutine taken_over(self, model, run, news, fault)
       class(progress_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(accepted_step_t), intent(in) :: done
-      type(slot_t), intent(inout) :: earlier(:)
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: line
       real(wp) :: now, left
@@ -71,25 +70,26 @@ contains
    end subroutine taken_over
 
    !> Shows an attempt that is not accepted, as often as that.
-   subroutine repeated(self, model, run, dt)
+   subroutine repeated(self, model, run, news, fault)
       class(progress_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      real(wp), intent(in) :: dt
+      type(run_t), intent(inout) :: run
+      type(news_t), intent(inout) :: news
+      type(fault_t), intent(inout) :: fault
 
       if (.not. to_terminal()) return
       if (clock() - self%last_line < PERIOD) return
       self%last_line = clock()
       call write_line('Stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%state%time)// &
-                      ' s: a step of '//short(dt)//' s is repeated, cuts '//whole(run%cuts), self)
+                      ' s: a step of '//short(news%scheme%dt)//' s is repeated, cuts '//whole(run%cuts), self)
    end subroutine repeated
 
    !> Empties the line on the terminal, so that another can be written.
-   subroutine stage_ends(self, model, run, complete, fault)
+   subroutine stage_ends(self, model, run, news, fault)
       class(progress_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      logical, intent(in) :: complete
+      type(run_t), intent(inout) :: run
+      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (self%standing > 0) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', self%standing)//achar(13)

@@ -9,13 +9,12 @@ module start_report
    use start_findings, only: balance_t
    use model_types, only: model_t
    use run_cost, only: size_of_run
-   use run_observer, only: observers_t
+   use run_observer, only: observers_t, news_t, FITS
    use run_state, only: run_t, act_contacts
    use scene_types, only: scene_t
-   use scene_warnings, only: list_warnings
+   use scene_warnings, only: warn_of_scene
    use start_balance, only: find_imbalance
    use texts, only: short, whole
-   use warnings, only: print_warning, WARNING_LENGTH
    implicit none (type, external)
    private
    public :: report_start, report_restart
@@ -27,23 +26,21 @@ contains
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run   !< The contacts are probed.
       logical, intent(in) :: quiet, verbose, only_check
-      character(WARNING_LENGTH), allocatable :: doubts(:)
       type(balance_t) :: balance
       type(contact_alarm_t) :: contacts
-      integer :: i
+      type(news_t) :: news
+      type(fault_t) :: none
 
       if (.not. quiet) call announce(model, run, verbose)
       call find_imbalance(model, run, balance)
       if (.not. quiet .and. balance%known) write (output_unit, '(a)') 'Start: at most '//short(balance%stress)// &
          ' kPa without balance, at ('//short(balance%x(1))//', '//short(balance%x(2))//') m; the stress there is '// &
          short(balance%there)//' kPa.'
-      call list_warnings(scene, model, run%tension, balance, doubts)
-      do i = 1, size(doubts)
-         call print_warning(doubts(i))
-      end do
+      call warn_of_scene(scene, model, run%tension, balance)
       if (.not. only_check) return
       call act_contacts(model, model%stages(1), run%system%contacts)
-      call contacts%stage_begins(model, run, 1)
+      news%stage = 1
+      call contacts%stage_begins(model, run, news, none)
    end subroutine report_start
 
    !> Says what is going to run.
@@ -72,14 +69,15 @@ contains
    !> fit.
    subroutine report_restart(model, run, observers, restart, folder, quiet, fault)
       type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      type(observers_t), intent(in) :: observers
+      type(run_t), intent(inout) :: run
+      type(observers_t), intent(inout) :: observers
       character(*), intent(in) :: restart, folder   !< Path of the checkpoint, empty: none; folder of the results.
       logical, intent(in) :: quiet
       type(fault_t), intent(inout) :: fault
+      type(news_t) :: news
 
       if (restart == '') return
-      call observers%check_fit(model, run, fault)
+      call observers%tell(FITS, model, run, news, fault)
       if (fault%code /= 0 .or. quiet) return
       write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
          ', step '//whole(run%at%step)//', time '//short(run%state%time)// &

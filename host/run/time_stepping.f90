@@ -4,10 +4,10 @@ module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
    use convergence, only: control_t, log_t
-   use generalised_alpha, only: scheme_t
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
-   use run_observer, only: observers_t, accepted_step_t
+   use run_observer, only: observers_t, news_t, FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, &
+                           ENDS
    use run_state, only: run_t, act_contacts
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
@@ -28,16 +28,18 @@ contains
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
+      type(news_t) :: news
       integer :: i
 
-      call observers%begin_run(model, run, fault)
-      if (fault%code /= 0) return
+      if (run%steps > 0) call observers%tell(FITS, model, run, news, fault)
+      call observers%tell(BEGINS, model, run, news, fault)
       do i = max(1, run%at%stage), size(model%stages)
-         call run_stage(model, i, run, observers, fault)
-         call observers%end_stage(model, run, fault)
          if (fault%code /= 0) exit
+         call run_stage(model, i, run, observers, fault)
+         news = news_t(stage=i, complete=fault%code == 0)
+         call observers%tell(STAGE_ENDS, model, run, news, fault)
       end do
-      call observers%end_run(model, run, fault)
+      call observers%tell(ENDS, model, run, news, fault)
       call release(run%system%sparse)
       run%system%analysed = .false.
    end subroutine run_stages
@@ -51,6 +53,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(control_t) :: control
       type(log_t) :: log
+      type(news_t) :: news
       real(wp) :: dt
       logical :: accepted
 
@@ -61,7 +64,8 @@ contains
          if (run%at%stage == number) then
             call resume_stage(model, run, fault)
          else
-            call observers%begin_stage(model, run, number)
+            news%stage = number
+            call observers%tell(STAGE_BEGINS, model, run, news, fault)
             call begin_stage(model, number, run, fault)
          end if
          do while (fault%code == 0)
@@ -75,7 +79,8 @@ contains
             if (accepted) then
                call close_step(model, number, dt, control, log, run, observers, fault)
             else
-               call observers%see_repeated(model, run, dt)
+               news%scheme%dt = dt
+               call observers%tell(REPEATED, model, run, news, fault)
             end if
          end do
          if (fault%code /= 0) return
@@ -94,19 +99,17 @@ contains
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(accepted_step_t) :: done
-      type(scheme_t) :: scheme
+      type(news_t) :: news
       type(fault_t) :: verdict
       integer :: i
 
       associate (stage => model%stages(number), at => run%at)
          ! How it was taken, before it counts.
-         scheme = scheme_of(stage, run, dt)
+         news = news_t(number, scheme_of(stage, run, dt), control, log, run%control%error, &
+                           at%t_start + stage%duration - run%next%time <= LAST_STEP*dt)
          at%step = at%step + 1
          run%steps = run%steps + 1
-         done = accepted_step_t(number, scheme, control, log, run%control%error, &
-                                at%t_start + stage%duration - run%next%time <= LAST_STEP*dt)
-         call observers%see_step(model, run, done, verdict)
+         call observers%tell(STEP, model, run, news, verdict)
          run%dissipated = 0.0_wp
          do i = 1, size(run%terms)
             call run%terms(i)%term%accept(run%solution_t, run%dissipated)
@@ -121,7 +124,7 @@ contains
             at%good = 0
          end if
       end associate
-      call observers%see_taken_over(model, run, done, fault)
+      call observers%tell(TAKEN_OVER, model, run, news, fault)
       if (fault%code == 0) fault = verdict
    end subroutine close_step
 

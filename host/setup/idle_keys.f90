@@ -9,41 +9,39 @@ module idle_keys
    use scene_keys, only: keys_of_scenes
    use scene_types, only: scene_t, WITH_P_W, WITH_P_C
    use texts, only: lower_case, LENGTH
-   use warnings, only: add_warning, WARNING_LENGTH
+   use warnings, only: print_warning
    implicit none (type, external)
    private
-   public :: list_idle_keys
+   public :: warn_of_idle_keys
 contains
-   !> Adds a warning for every key and every definition of a scene that has no effect.
-   subroutine list_idle_keys(scene, warnings)
+   !> Warns of every key and every definition of a scene that has no effect.
+   subroutine warn_of_idle_keys(scene)
       type(scene_t), intent(in) :: scene
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)   !< They grow. (warnings)
       type(key_t), allocatable :: keys(:)
       integer :: g, i, k
 
       allocate (keys, source=keys_of_scenes())
       if (allocated(scene%absent)) then
          do i = 1, size(scene%absent)
-            call add_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))// &
-                             ''' of &scene has no effect: the scene does not have it.', warnings)
+            call print_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))// &
+                             ''' of &scene has no effect: the scene does not have it.')
          end do
       end if
       do g = 1, size(scene%groups)
          if (is_law(scene%groups(g)%name)) cycle
          do i = 1, scene%groups(g)%count
             k = place_of(keys, scene%groups(g)%name, scene%groups(g)%entries(i)%key)
-            if (k > 0) call judge(keys, keys(k), scene, scene%groups(g), warnings)
+            if (k > 0) call judge(keys, keys(k), scene, scene%groups(g))
          end do
       end do
-      call list_unused_definitions(keys, scene, warnings)
-   end subroutine list_idle_keys
+      call warn_of_unused_definitions(keys, scene)
+   end subroutine warn_of_idle_keys
 
    !> The conditions of a key that a group gives.
-   subroutine judge(keys, key, scene, group, warnings)
+   subroutine judge(keys, key, scene, group)
       type(key_t), intent(in) :: keys(:), key
       type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(:), allocatable :: rest, condition, other, word
       character(LENGTH) :: text
       integer :: at
@@ -80,16 +78,15 @@ contains
       subroutine idle(why)
          character(*), intent(in) :: why
 
-         call add_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'//trim(group%name)// &
-                          ' has no effect'//why//'.', warnings)
+         call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'//trim(group%name)// &
+                          ' has no effect'//why//'.')
       end subroutine idle
    end subroutine judge
 
    !> Definitions, of a kind that keys refer to, that no key of the scene names.
-   subroutine list_unused_definitions(keys, scene, warnings)
+   subroutine warn_of_unused_definitions(keys, scene)
       type(key_t), intent(in) :: keys(:)
       type(scene_t), intent(in) :: scene
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       character(12) :: kind
       integer :: g
 
@@ -98,12 +95,12 @@ contains
             kind = group%name(:12)
             if (is_law(group%name)) kind = 'material'
             if (.not. any(keys%refers == kind)) cycle
-            if (.not. is_referred_to(keys, scene%groups, kind, name_of(group))) call add_warning( &
+            if (.not. is_referred_to(keys, scene%groups, kind, name_of(group))) call print_warning( &
                at_line(group%file, group%line)//'&'//trim(group%name)//' '''//name_of(group)// &
-               ''' has no effect: no group names it as its '//trim(kind)//'.', warnings)
+               ''' has no effect: no group names it as its '//trim(kind)//'.')
          end associate
       end do
-   end subroutine list_unused_definitions
+   end subroutine warn_of_unused_definitions
 
    !> Whether a group gives the name of a definition by a key that refers to its kind.
    logical function is_referred_to(keys, groups, kind, name)

@@ -4,9 +4,9 @@
 module scene_warnings
    use kinds, only: wp
    use faults, only: at_line
-   use boundary_warnings, only: list_boundary_warnings
-   use idle_keys, only: list_idle_keys
-   use warnings, only: add_warning, WARNING_LENGTH
+   use boundary_warnings, only: warn_of_boundaries
+   use idle_keys, only: warn_of_idle_keys
+   use warnings, only: print_warning
    use start_findings, only: tension_t, balance_t
    use key_schema, only: line_of, given, get_number
    use material_elastic, only: elastic_t
@@ -16,13 +16,13 @@ module scene_warnings
    use namelists, only: group_t
    use scene_parts, only: place_of
    use scene_types, only: scene_t
-   use start_look, only: list_start_warnings
+   use start_look, only: warn_of_start
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole
    use triangle_mesh, only: mesh_t
    implicit none (type, external)
    private
-   public :: list_warnings
+   public :: warn_of_scene
 
    real(wp), parameter :: SAME_PLACE = 1.0e-6_wp      !< Share of the mesh below which a point is a node.
    real(wp), parameter :: LARGE_MESH = 1.0e3_wp, SMALL_MESH = 1.0e-3_wp   !< [m]
@@ -53,57 +53,54 @@ module scene_warnings
       usual_t('p_ref', 10.0_wp, 1.0e4_wp, FAR, 'an absolute pressure in kPa (101.325)'), &
       usual_t('rho_s', 0.0_wp, 20.0_wp, FAR, 'a density in Mg/m3 (quartz 2.65)')]
 contains
-   !> All warnings about a scene, in the order of their kinds; empty if there are none. Raises no fault.
-   subroutine list_warnings(scene, model, tension, balance, warnings)
+   !> Prints all warnings about a scene, in the order of their kinds.
+   subroutine warn_of_scene(scene, model, tension, balance)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       type(tension_t), intent(in) :: tension   !< Of the initial state.
       type(balance_t), intent(in) :: balance   !< Likewise.
-      character(WARNING_LENGTH), allocatable, intent(out) :: warnings(:)   !< (warnings)
 
-      allocate (warnings(0))
-      call look_at_sizes(scene, model, warnings)
-      call look_at_slits(model, warnings)
-      call look_at_units(scene, warnings)
-      call look_at_regions(scene, model, warnings)
-      call look_at_materials(scene, model, warnings)
-      call look_at_uses(scene, model, tension, warnings)
-      call look_at_initials(model, tension, warnings)
-      call list_start_warnings(model, balance, warnings)
-      call list_boundary_warnings(model, warnings)
-      call look_at_retentions(scene, model, warnings)
-      call list_idle_keys(scene, warnings)
-   end subroutine list_warnings
+      call look_at_sizes(scene, model)
+      call look_at_slits(model)
+      call look_at_units(scene)
+      call look_at_regions(scene, model)
+      call look_at_materials(scene, model)
+      call look_at_uses(scene, model, tension)
+      call look_at_initials(model, tension)
+      call warn_of_start(model, balance)
+      call warn_of_boundaries(model)
+      call look_at_retentions(scene, model)
+      call warn_of_idle_keys(scene)
+   end subroutine warn_of_scene
 
    !> Units of length, permeability and stiffness.
-   subroutine look_at_sizes(scene, model, warnings)
+   subroutine look_at_sizes(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       real(wp) :: size_of, k
       integer :: i
 
       size_of = extent(model%domain%mesh)
-      if (size_of > LARGE_MESH .or. size_of < SMALL_MESH) call add_warning(place_of(scene%mesh)//'the mesh is '// &
-         short(size_of)//' m large; lengths are in m.'//remedy(), warnings)
+      if (size_of > LARGE_MESH .or. size_of < SMALL_MESH) call print_warning(place_of(scene%mesh)//'the mesh is '// &
+         short(size_of)//' m large; lengths are in m.'//remedy())
       if (scene%mesh%mesh_file /= '' .and. .not. scene%mesh%scale_given .and. size_of > LARGE_FILE .and. &
-          size_of <= LARGE_MESH) call add_warning(place_of(scene%mesh)//'the mesh of the file is '//short(size_of)// &
-         ' m large; lengths are in m.'//remedy(), warnings)
+          size_of <= LARGE_MESH) call print_warning(place_of(scene%mesh)//'the mesh of the file is '//short(size_of)// &
+         ' m large; lengths are in m.'//remedy())
       do i = 1, size(scene%groups)
          associate (group => scene%groups(i))
             if (group%name /= 'permeability') cycle
             k = value_of(group, 'intrinsic')
-            if (k > PERMEABLE) call add_warning(at_line(group%file, line_of(group, 'intrinsic'))//'intrinsic = '// &
+            if (k > PERMEABLE) call print_warning(at_line(group%file, line_of(group, 'intrinsic'))//'intrinsic = '// &
                short(k)//' m2 is more than coarse gravel has; a conductivity [m/s] is k rho_w g/eta_w, about 1e7 '// &
-               'times the permeability k [m2].', warnings)
+               'times the permeability k [m2].')
          end associate
       end do
       do i = 1, size(model%domain%regions)
          select type (law => model%domain%regions(i)%law)
          type is (elastic_t)
-            if (law%young > STIFF) call add_warning(place_of(scene%regions(i))//'material '''// &
+            if (law%young > STIFF) call print_warning(place_of(scene%regions(i))//'material '''// &
                trim(scene%regions(i)%material_name)//''' has young = '//short(law%young)//' kPa, more than any '// &
-               'soil or metal; moduli are in kPa.', warnings)
+               'soil or metal; moduli are in kPa.')
          end select
       end do
    contains
@@ -126,9 +123,8 @@ contains
    end function value_of
 
    !> Fluids and grains that seem to have another unit.
-   subroutine look_at_units(scene, warnings)
+   subroutine look_at_units(scene)
       type(scene_t), intent(in) :: scene
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       real(wp) :: value
       integer :: g, k
 
@@ -139,61 +135,58 @@ contains
                if (.not. given(group, trim(USUAL(k)%key))) cycle
                value = value_of(group, trim(USUAL(k)%key))
                if (value >= USUAL(k)%lower .and. (value <= USUAL(k)%upper .or. value >= USUAL(k)%beyond)) cycle
-               call add_warning(at_line(group%file, line_of(group, trim(USUAL(k)%key)))//trim(USUAL(k)%key)//' = '// &
+               call print_warning(at_line(group%file, line_of(group, trim(USUAL(k)%key)))//trim(USUAL(k)%key)//' = '// &
                   short(value)//' of &'//trim(group%name)//' is unusual for '//trim(USUAL(k)%say)//'; scenes are '// &
-                  'in m, s, kPa and Mg.', warnings)
+                  'in m, s, kPa and Mg.')
             end do
          end associate
       end do
    end subroutine look_at_units
 
    !> Regions without an element.
-   subroutine look_at_regions(scene, model, warnings)
+   subroutine look_at_regions(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       integer :: i
 
       do i = 1, size(scene%regions)
          if (any(model%domain%region_of == i)) cycle
-         call add_warning(place_of(scene%regions(i))//'the region '''//trim(scene%regions(i)%group_name)//''' has '// &
-            'no element'//trim(merge(': other regions name them all.', '.                             ', &
-            scene%regions(i)%rest)), warnings)
+         call print_warning(place_of(scene%regions(i))//'the region '''//trim(scene%regions(i)%group_name)// &
+            ''' has no element'//trim(merge(': other regions name them all.', '.                             ', &
+            scene%regions(i)%rest)))
       end do
    end subroutine look_at_regions
 
    !> What laws say of their parameters, and laws in another unit of stress: each material once.
-   subroutine look_at_materials(scene, model, warnings)
+   subroutine look_at_materials(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       integer :: i
 
       do i = 1, size(model%domain%regions)
          associate (given => scene%regions(i), law => model%domain%regions(i)%law)
             if (any(scene%regions(:i - 1)%material_name == given%material_name)) cycle
-            if (law%doubt /= '') call add_warning(trim(law%doubt), warnings)
-            if (law%unit%name /= KILOPASCAL%name) call add_warning(place_of(given)//'material '''// &
+            if (law%doubt /= '') call print_warning(trim(law%doubt))
+            if (law%unit%name /= KILOPASCAL%name) call print_warning(place_of(given)//'material '''// &
                trim(given%material_name)//''' has a p_atm of '//short(ATMOSPHERE*law%unit%factor)//'; scenes are '// &
-               'in kPa, in which it is about '//short(ATMOSPHERE)//'.', warnings)
+               'in kPa, in which it is about '//short(ATMOSPHERE)//'.')
          end associate
       end do
    end subroutine look_at_materials
 
    !> Laws that are used outside the tests behind them. A few points at low stress, as below a surface, are none.
-   subroutine look_at_uses(scene, model, tension, warnings)
+   subroutine look_at_uses(scene, model, tension)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       type(tension_t), intent(in) :: tension
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       integer :: i
 
       do i = 1, size(tension%uses)
          associate (used => tension%uses(i), law => model%domain%regions(i)%law)
             if (used%outside_e == 0 .and. used%outside_p <= FEW*used%points) cycle
-            call add_warning(place_of(scene%regions(i))//'material '''//trim(scene%regions(i)%material_name)// &
+            call print_warning(place_of(scene%regions(i))//'material '''//trim(scene%regions(i)%material_name)// &
                ''' begins outside what it was fitted to at '//whole(max(used%outside_e, used%outside_p))//' of '// &
-               whole(used%points)//' points: '//untested(law, used%e, used%p)//'.', warnings)
+               whole(used%points)//' points: '//untested(law, used%e, used%p)//'.')
          end associate
       end do
    end subroutine look_at_uses
@@ -211,36 +204,34 @@ contains
       end do
    end function extent
 
-   subroutine look_at_initials(model, tension, warnings)
+   subroutine look_at_initials(model, tension)
       type(model_t), intent(in) :: model
       type(tension_t), intent(in) :: tension
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       real(wp) :: top
       integer :: i
 
-      if (tension%points > 0) call add_warning('The initial effective stress is tensile at '// &
+      if (tension%points > 0) call print_warning('The initial effective stress is tensile at '// &
          whole(tension%points)//' points of MUD, most at z = '//short(tension%z)//' m ('//short(tension%largest)// &
          ' kPa): sand carries none, and the material starts from what it can carry, without balance; correct '// &
-         'p_w, surface or k_0 of &initial, or add a surcharge.', warnings)
-      if (tension%bare > 0) call add_warning(whole(tension%bare)//' points of MUD begin without effective stress: '// &
-         'sand has no stiffness there, and what the first step finds is arbitrary; give stress = ''geostatic'' or '// &
-         '''uniform'' in &initial.', warnings)
+         'p_w, surface or k_0 of &initial, or add a surcharge.')
+      if (tension%bare > 0) call print_warning(whole(tension%bare)//' points of MUD begin without effective '// &
+         'stress: sand has no stiffness there, and what the first step finds is arbitrary; give '// &
+         'stress = ''geostatic'' or ''uniform'' in &initial.')
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
             if (.not. one%geostatic .or. one%follows .or. size(group%nodes) == 0) cycle
             top = maxval(model%domain%mesh%x(2, group%nodes))
-            if (one%surface < top - SAME_PLACE*extent(model%domain%mesh)) call add_warning(place_of(one)// &
+            if (one%surface < top - SAME_PLACE*extent(model%domain%mesh)) call print_warning(place_of(one)// &
                'surface = '//short(one%surface)//' m lies below the top of group '''//trim(one%group_name)// &
-               ''' at '//short(top)//' m: above it the weight is negative.', warnings)
+               ''' at '//short(top)//' m: above it the weight is negative.')
          end associate
       end do
    end subroutine look_at_initials
 
    !> Names of curves that are not looked up because the scene has no suction.
-   subroutine look_at_retentions(scene, model, warnings)
+   subroutine look_at_retentions(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
-      character(WARNING_LENGTH), allocatable, intent(inout) :: warnings(:)
       integer :: i
 
       if (model%domain%with_c) return
@@ -248,8 +239,8 @@ contains
          associate (region => scene%regions(i))
             if (any([character(8) :: '', 'material', 'mud'] == region%retention_name)) cycle
             if (any(scene%retentions%name == region%retention_name)) cycle
-            call add_warning(place_of(region)//'no &retention is named '''//trim(region%retention_name)//'''; the '// &
-                             'scene has no suction, which would refuse it.', warnings)
+            call print_warning(place_of(region)//'no &retention is named '''//trim(region%retention_name)// &
+                               '''; the scene has no suction, which would refuse it.')
          end associate
       end do
    end subroutine look_at_retentions
