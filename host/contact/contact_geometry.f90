@@ -3,9 +3,9 @@
 !> do. docs/theory/contact.md section 2.
 module contact_geometry
    use contact_projection, only: edge_of, least_stretch
-   use contact_types, only: NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, contact_fail, &
-                            is_finite, CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, &
-                            CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE
+   use contact_types, only: NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, is_finite, &
+                            CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
+                            CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE
    use kinds, only: wp
    implicit none (type, external)
    private
@@ -53,23 +53,18 @@ contains
    pure subroutine check_options(options, status)
       type(contact_options_t), intent(in) :: options
       type(contact_status_t), intent(out) :: status
+      real(wp) :: numbers(5)
+      integer :: i
 
-      if (.not. all(is_finite([options%friction, options%cohesion, options%tangential_penalty]))) then
-         status = contact_fail(CONTACT_BAD_OPTION, &
-                               value=options%friction + options%cohesion + options%tangential_penalty)
-      else if (any([options%friction, options%cohesion, options%tangential_penalty] < 0.0_wp)) then
-         status = contact_fail(CONTACT_BAD_OPTION, &
-                               value=min(options%friction, options%cohesion, options%tangential_penalty))
-      else if (.not. all(is_finite([options%penalty, options%search_radius]))) then
-         status = contact_fail(CONTACT_BAD_OPTION, &
-                               value=merge(options%search_radius, options%penalty, is_finite(options%penalty)))
-      else if (options%penalty <= 0.0_wp) then
-         status = contact_fail(CONTACT_BAD_OPTION, value=options%penalty)
-      else if (options%search_radius < 0.0_wp) then
-         status = contact_fail(CONTACT_BAD_OPTION, value=options%search_radius)
-      else if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP])) then
-         status = contact_fail(CONTACT_BAD_OPTION, value=real(options%gap, wp))
-      end if
+      numbers = [options%penalty, options%search_radius, options%friction, options%cohesion, options%tangential_penalty]
+      do i = size(numbers), 1, -1
+         if (.not. is_finite(numbers(i))) status = contact_status_t(CONTACT_BAD_OPTION, value=numbers(i))
+         if (status%code /= CONTACT_OK) return
+         if (numbers(i) < 0.0_wp) status = contact_status_t(CONTACT_BAD_OPTION, value=numbers(i))
+      end do
+      if (.not. options%penalty > 0.0_wp) status = contact_status_t(CONTACT_BAD_OPTION, value=options%penalty)
+      if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP])) &
+         status = contact_status_t(CONTACT_BAD_OPTION, value=real(options%gap, wp))
    end subroutine check_options
 
    !> The edges of every node; at most two, of a middle node one.
@@ -85,12 +80,12 @@ contains
          do i = 1, 3
             node = edges(i, e)
             if (node < 1 .or. node > nodes) then
-               status = contact_fail(CONTACT_BAD_EDGE, e, master, real(node, wp))
+               status = contact_status_t(CONTACT_BAD_EDGE, e, master, real(node, wp))
                return
             end if
             ! A middle node fills both places, so that nobody else may have it.
             if (edges_of(2, node) /= 0 .or. (i == 3 .and. edges_of(1, node) /= 0)) then
-               status = contact_fail(CONTACT_BAD_EDGE, e, master, real(node, wp))
+               status = contact_status_t(CONTACT_BAD_EDGE, e, master, real(node, wp))
                return
             end if
             if (edges_of(1, node) == 0) then
@@ -118,9 +113,9 @@ contains
       integer :: i
 
       if (size(slave_x, 2) /= geometry%slave_nodes) then
-         status = contact_fail(CONTACT_BAD_SIZE, geometry%slave_nodes, .false., real(size(slave_x, 2), wp))
+         status = contact_status_t(CONTACT_BAD_SIZE, geometry%slave_nodes, .false., real(size(slave_x, 2), wp))
       else if (size(master_x, 2) /= geometry%master_nodes) then
-         status = contact_fail(CONTACT_BAD_SIZE, geometry%master_nodes, .true., real(size(master_x, 2), wp))
+         status = contact_status_t(CONTACT_BAD_SIZE, geometry%master_nodes, .true., real(size(master_x, 2), wp))
       end if
       if (status%code /= CONTACT_OK) return
       call check_surface(slave_x, geometry%slave_edges, .false., status)
@@ -130,7 +125,7 @@ contains
       rounding = epsilon(1.0_wp)*maxval(abs(slave_x))
       do i = 1, geometry%slave_nodes
          if (slave_x(1, i) >= -rounding) cycle
-         status = contact_fail(CONTACT_BAD_RADIUS, i, .false., slave_x(1, i))
+         status = contact_status_t(CONTACT_BAD_RADIUS, i, .false., slave_x(1, i))
          return
       end do
    end subroutine check_coordinates
@@ -145,13 +140,13 @@ contains
 
       do i = 1, size(x, 2)
          if (all(is_finite(x(:, i)))) cycle
-         status = contact_fail(CONTACT_NOT_FINITE, i, master)
+         status = contact_status_t(CONTACT_NOT_FINITE, i, master)
          return
       end do
       do i = 1, size(edges, 2)
          stretch = least_stretch(edge_of(x(:, edges(:, i))))
          if (stretch > LEAST_STRETCH_LENGTH) cycle
-         status = contact_fail(CONTACT_DISTORTED_EDGE, i, master, stretch)
+         status = contact_status_t(CONTACT_DISTORTED_EDGE, i, master, stretch)
          return
       end do
    end subroutine check_surface

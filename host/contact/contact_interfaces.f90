@@ -8,6 +8,7 @@ module contact_interfaces
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, &
                               slid_work
+   use contact_response, only: nodal_forces_t
    use contact_plate, only: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
    use plate_motion, only: plate_motion_t, plate_positions
    use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
@@ -375,9 +376,9 @@ contains
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
             if (allocated(t%plate%motion)) then
-               call list(t%on_plate%row(:t%on_plate%triplets), t%on_plate%column(:t%on_plate%triplets))
+               call list(t%unknown, t%on_plate)
             else
-               call list(t%result%row(:t%result%triplets), t%result%column(:t%result%triplets))
+               call list(t%unknown, t%result)
             end if
          end associate
       end do
@@ -389,18 +390,18 @@ contains
          room = t%result%triplets + t%on_plate%triplets
       end function room
 
-      subroutine list(row, column)
-         integer, intent(in) :: row(:), column(:)
-         integer :: k
+      subroutine list(u, forces)
+         integer, intent(in) :: u(:)
+         class(nodal_forces_t), intent(in) :: forces
+         integer :: pair(2), k
 
-         associate (u => self%interfaces(i)%unknown)
-            do k = 1, size(row)
-               if (u(row(k)) == 0 .or. u(column(k)) == 0) cycle
-               if (place_of(pattern, u(row(k)), u(column(k))) > 0) cycle
-               n = n + 1
-               pairs(:, n) = [u(row(k)), u(column(k))]
-            end do
-         end associate
+         do k = 1, forces%triplets
+            pair = u([forces%row(k), forces%column(k)])
+            if (any(pair == 0)) cycle
+            if (place_of(pattern, pair(1), pair(2)) > 0) cycle
+            n = n + 1
+            pairs(:, n) = pair
+         end do
       end subroutine list
    end function missing
 
@@ -417,30 +418,30 @@ contains
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
             if (allocated(t%plate%motion)) then
-               call add_one(t%unknown, t%on_plate%force, t%on_plate%size, t%on_plate%row(:t%on_plate%triplets), &
-                            t%on_plate%column, t%on_plate%value)
+               call add_one(t%unknown, t%on_plate, t%on_plate%size)
             else
-               call add_one(t%unknown, t%result%force, abs(t%result%force), t%result%row(:t%result%triplets), &
-                            t%result%column, t%result%value)
+               call add_one(t%unknown, t%result, abs(t%result%force))
             end if
          end associate
       end do
    contains
-      subroutine add_one(u, force, sizes, row, column, value)
-         integer, intent(in) :: u(:), row(:), column(:)
-         real(wp), intent(in) :: force(:), sizes(:), value(:)
-         integer :: k, place
+      subroutine add_one(u, forces, sizes)
+         integer, intent(in) :: u(:)
+         class(nodal_forces_t), intent(in) :: forces
+         real(wp), intent(in) :: sizes(:)
+         integer :: pair(2), k, place
 
          do k = 1, size(u)
             if (u(k) == 0) cycle
-            residual(u(k)) = residual(u(k)) + force(k)
+            residual(u(k)) = residual(u(k)) + forces%force(k)
             scale(u(k)) = scale(u(k)) + sizes(k)
          end do
          if (.not. with_slopes) return
-         do k = 1, size(row)
-            if (u(row(k)) == 0 .or. u(column(k)) == 0) cycle
-            place = place_of(pattern, u(row(k)), u(column(k)))
-            values(place) = values(place) + share*value(k)
+         do k = 1, forces%triplets
+            pair = u([forces%row(k), forces%column(k)])
+            if (any(pair == 0)) cycle
+            place = place_of(pattern, pair(1), pair(2))
+            values(place) = values(place) + share*forces%value(k)
          end do
       end subroutine add_one
    end subroutine add

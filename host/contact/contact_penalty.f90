@@ -8,16 +8,15 @@ module contact_penalty
    use contact_geometry, only: contact_geometry_t, check_coordinates
    use contact_mortar, only: overlap_t, find_overlap, pair_gaps, penetration, hats, POINTS, POSITION, SHARE
    use contact_projection, only: edge_t, edge_of, place, tangent
-   use contact_response, only: response_t, pair_response
+   use contact_response, only: response_t, nodal_forces_t, pair_response, new_forces, make_room, add_column
    use contact_search, only: search_t, prepare_search, find_candidates
    use contact_types, only: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, &
-                            contact_fail, CONTACT_OK, CONTACT_NO_PROJECTION
+                            CONTACT_OK, CONTACT_NO_PROJECTION
    use kinds, only: wp
    implicit none (type, external)
    private
    public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, slid_work
 
-   integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
    real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Share of the penalty, where both gaps are penalised [-].
 
    !> A slave edge with a master edge opposite.
@@ -40,13 +39,8 @@ module contact_penalty
    end type contact_workspace_t
 
    !> Outcome of an evaluation.
-   type :: contact_result_t
+   type, extends(nodal_forces_t) :: contact_result_t
       real(wp) :: energy = 0.0_wp               !< 1/2 eps sum_A w_A <-g_A>**2, or eq. (18) [kN m] (plane: kN)
-      real(wp), allocatable :: force(:)         !< Slope of the energy: minus what contact exerts on the nodes [kN]
-      integer :: triplets = 0                   !< Number of triplets that are filled.
-      integer, allocatable :: row(:)
-      integer, allocatable :: column(:)
-      real(wp), allocatable :: value(:)         !< d force/d displacement; equal places are to be added [kN/m]
       real(wp), allocatable :: weight(:)        !< w_A of the part opposite the master [m2] (plane: m)
       real(wp), allocatable :: whole(:)         !< w_A if everything were opposite: weight/whole is the coverage.
       real(wp), allocatable :: gap(:)           !< g_A, open > 0; 0 where w_A = 0 [m]
@@ -83,14 +77,12 @@ contains
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_result_t) :: result
 
-      allocate (result%force(2*(geometry%slave_nodes + geometry%master_nodes)), source=0.0_wp)
+      result%nodal_forces_t = new_forces(2*(geometry%slave_nodes + geometry%master_nodes))
       allocate (result%weight(geometry%slave_nodes), result%whole(geometry%slave_nodes), &
                 result%gap(geometry%slave_nodes), result%pressure(geometry%slave_nodes), source=0.0_wp)
       allocate (result%active(geometry%slave_nodes), source=.false.)
       allocate (result%side(geometry%slave_nodes), source=0)
       allocate (result%slip(geometry%slave_nodes), result%traction(geometry%slave_nodes), source=0.0_wp)
-      allocate (result%row(FIRST_ROOM), result%column(FIRST_ROOM), source=0)
-      allocate (result%value(FIRST_ROOM), source=0.0_wp)
    end function new_result
 
    !> Evaluates everything for current coordinates. If the status is not CONTACT_OK the answer is of no use.
@@ -180,7 +172,7 @@ contains
                call pair_gaps(x, pair%overlap, geometry%options%axisymmetric, weight, weighted_gap, pair%d_weight, &
                               pair%d_weighted_gap, pair%push, missed)
                if (missed > 0.0_wp) then
-                  status = contact_fail(CONTACT_NO_PROJECTION, e, .false., missed)
+                  status = contact_status_t(CONTACT_NO_PROJECTION, e, .false., missed)
                   return
                end if
             end associate
@@ -329,7 +321,7 @@ contains
          at_ends = geometry%options%gap == COMBINED_GAP .and. options%gap == POINTWISE_GAP
          call pair_response(x, pair%overlap, options, at_ends, result%pressure(nodes), with_tangent, response, missed)
          if (missed > 0.0_wp) then
-            status = contact_fail(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
+            status = contact_status_t(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
             return
          end if
          acts = .true.
@@ -459,42 +451,6 @@ contains
       of_pair(:, 1:3) = of_slave(:, geometry%slave_edges(:, slave))
       of_pair(:, 4:6) = of_master(:, geometry%master_edges(:, master))
    end function of_edges
-
-   !> Entries of one column of the tangent; exact zeros are left out. There must be room for them.
-   pure subroutine add_column(result, rows, column, values)
-      type(contact_result_t), intent(inout) :: result
-      integer, intent(in) :: rows(:), column   !< Numbers of unknowns. (entries)
-      real(wp), intent(in) :: values(:)        !< (entries) [kN/m]
-      integer :: i
-
-      do i = 1, size(rows)
-         if (.not. abs(values(i)) > 0.0_wp) cycle
-         result%triplets = result%triplets + 1
-         result%row(result%triplets) = rows(i)
-         result%column(result%triplets) = column
-         result%value(result%triplets) = values(i)
-      end do
-   end subroutine add_column
-
-   !> Room for more triplets: it doubles, so that it soon stays as it is.
-   pure subroutine make_room(result, more)
-      type(contact_result_t), intent(inout) :: result
-      integer, intent(in) :: more   !< Triplets.
-      integer, allocatable :: row(:), column(:)
-      real(wp), allocatable :: value(:)
-      integer :: n
-
-      if (result%triplets + more <= size(result%row)) return
-      n = max(2*size(result%row), result%triplets + more)
-      allocate (row(n), column(n), source=0)
-      allocate (value(n), source=0.0_wp)
-      row(:result%triplets) = result%row(:result%triplets)
-      column(:result%triplets) = result%column(:result%triplets)
-      value(:result%triplets) = result%value(:result%triplets)
-      call move_alloc(row, result%row)
-      call move_alloc(column, result%column)
-      call move_alloc(value, result%value)
-   end subroutine make_room
 
    pure subroutine grow_pairs(pair)
       type(pair_t), allocatable, intent(inout) :: pair(:)

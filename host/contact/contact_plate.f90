@@ -5,22 +5,15 @@ module contact_plate
    use kinds, only: wp
    use contact_geometry, only: contact_geometry_t
    use contact_penalty, only: contact_result_t
+   use contact_response, only: nodal_forces_t, new_forces, make_room, add_column
    use plate_motion, only: plate_motion_t
    implicit none (type, external)
    private
    public :: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
 
-   integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
-
    !> Forces and tangent over the unknowns 2 (node - 1) + direction of the slave's nodes, then those of the plate.
-   type :: plate_response_t
-      real(wp), allocatable :: force(:)      !< [kN]
+   type, extends(nodal_forces_t) :: plate_response_t
       real(wp), allocatable :: size(:)       !< Sum of the magnitudes that a force is made of [kN].
-      integer :: triplets = 0                !< Number of triplets that are filled.
-      integer, allocatable :: row(:)
-      integer, allocatable :: column(:)
-      real(wp), allocatable :: value(:)      !< d force/d displacement [kN/m]
-      real(wp), allocatable, private :: right(:, :), below(:, :)   !< The plate's columns and rows.
    end type plate_response_t
 contains
    !> Room for the forces and the tangent of a plate with `own` unknowns, sized for the slave of a geometry.
@@ -31,10 +24,8 @@ contains
       integer :: n
 
       n = 2*geometry%slave_nodes
-      allocate (plate%force(n + own), plate%size(n + own), source=0.0_wp)
-      allocate (plate%right(n, own), plate%below(n, own), source=0.0_wp)
-      allocate (plate%row(FIRST_ROOM), plate%column(FIRST_ROOM), source=0)
-      allocate (plate%value(FIRST_ROOM), source=0.0_wp)
+      plate%nodal_forces_t = new_forces(n + own)
+      allocate (plate%size(n + own), source=0.0_wp)
    end function new_plate_response
 
    !> Slope of the energy against the unknowns of the plate: minus the forces that contact exerts on it [kN].
@@ -62,6 +53,7 @@ contains
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) of the face, undisplaced [m]
       real(wp), intent(in) :: q(:)       !< (unknowns of the motion) [m]
       type(plate_response_t), intent(inout) :: plate
+      real(wp), dimension(2*geometry%slave_nodes, size(q)) :: right, below   ! The plate's columns and rows.
       real(wp) :: corner(size(q), size(q)), slopes(size(q), 2*size(x0, 2))
       integer :: k, i, j, n, own
 
@@ -75,8 +67,8 @@ contains
       do i = 1, size(slopes, 2)
          plate%size(n + 1:) = plate%size(n + 1:) + abs(slopes(:, i)*result%force(n + i))
       end do
-      plate%right = 0.0_wp
-      plate%below = 0.0_wp
+      right = 0.0_wp
+      below = 0.0_wp
       plate%triplets = 0
       corner = 0.0_wp
       call make_room(plate, result%triplets + own*(2*n + own))
@@ -84,11 +76,11 @@ contains
          i = result%row(k)
          j = result%column(k)
          if (i <= n .and. j <= n) then
-            call add(plate, i, j, result%value(k))
+            call add_column(plate, [i], j, [result%value(k)])
          else if (i <= n) then
-            plate%right(i, :) = plate%right(i, :) + result%value(k)*slopes(:, j - n)
+            right(i, :) = right(i, :) + result%value(k)*slopes(:, j - n)
          else if (j <= n) then
-            plate%below(j, :) = plate%below(j, :) + result%value(k)*slopes(:, i - n)
+            below(j, :) = below(j, :) + result%value(k)*slopes(:, i - n)
          else
             corner = corner + result%value(k)*spread(slopes(:, i - n), 2, own)*spread(slopes(:, j - n), 1, own)
          end if
@@ -96,35 +88,10 @@ contains
       corner = corner + motion%bending(x0, q, result%force(n + 1:))
       do j = 1, own
          do i = 1, n
-            call add(plate, i, n + j, plate%right(i, j))
-            call add(plate, n + j, i, plate%below(i, j))
+            call add_column(plate, [i], n + j, [right(i, j)])
+            call add_column(plate, [n + j], i, [below(i, j)])
          end do
-         do i = 1, own
-            call add(plate, n + i, n + j, corner(i, j))
-         end do
+         call add_column(plate, [(n + i, i=1, own)], n + j, corner(:, j))
       end do
    end subroutine gather_on_plate
-
-   !> One entry of the tangent; an exact zero is left out.
-   pure subroutine add(plate, row, column, value)
-      type(plate_response_t), intent(inout) :: plate
-      integer, intent(in) :: row, column
-      real(wp), intent(in) :: value
-
-      if (.not. abs(value) > 0.0_wp) return
-      plate%triplets = plate%triplets + 1
-      plate%row(plate%triplets) = row
-      plate%column(plate%triplets) = column
-      plate%value(plate%triplets) = value
-   end subroutine add
-
-   pure subroutine make_room(plate, n)
-      type(plate_response_t), intent(inout) :: plate
-      integer, intent(in) :: n
-
-      if (n <= size(plate%row)) return
-      deallocate (plate%row, plate%column, plate%value)
-      allocate (plate%row(2*n), plate%column(2*n), source=0)
-      allocate (plate%value(2*n), source=0.0_wp)
-   end subroutine make_room
 end module contact_plate

@@ -10,7 +10,9 @@ module contact_response
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: response_t, pair_response, add_work
+   public :: response_t, nodal_forces_t, pair_response, add_work, new_forces, make_room, add_column
+
+   integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
 
    !> Forces and stiffness of a pair, in local coordinates.
    type :: response_t
@@ -19,7 +21,54 @@ module contact_response
       real(wp) :: energy = 0.0_wp              !< Pointwise form only [kN m]
       real(wp) :: load(3) = 0.0_wp             !< Pointwise form only: int M_A p 2 pi r dGamma [kN]
    end type response_t
+
+   !> Forces over numbered unknowns, and their slopes as entries of a matrix.
+   type :: nodal_forces_t
+      real(wp), allocatable :: force(:)         !< Slope of the energy: minus what contact exerts on the nodes [kN]
+      integer :: triplets = 0                   !< Number of triplets that are filled.
+      integer, allocatable :: row(:), column(:)
+      real(wp), allocatable :: value(:)         !< d force/d displacement; equal places are to be added [kN/m]
+   end type nodal_forces_t
 contains
+   !> None, with room.
+   pure function new_forces(unknowns) result(forces)
+      integer, intent(in) :: unknowns
+      type(nodal_forces_t) :: forces
+
+      allocate (forces%force(unknowns), source=0.0_wp)
+      allocate (forces%row(FIRST_ROOM), forces%column(FIRST_ROOM), source=0)
+      allocate (forces%value(FIRST_ROOM), source=0.0_wp)
+   end function new_forces
+
+   !> Room for more triplets: it doubles, so that it soon stays as it is.
+   pure subroutine make_room(forces, more)
+      class(nodal_forces_t), intent(inout) :: forces
+      integer, intent(in) :: more   !< Triplets.
+      integer :: n
+
+      if (forces%triplets + more <= size(forces%row)) return
+      n = max(size(forces%row), more)
+      forces%row = [forces%row, spread(0, 1, n)]
+      forces%column = [forces%column, spread(0, 1, n)]
+      forces%value = [forces%value, spread(0.0_wp, 1, n)]
+   end subroutine make_room
+
+   !> Entries of one column of the tangent; exact zeros are left out. There must be room for them.
+   pure subroutine add_column(forces, rows, column, values)
+      class(nodal_forces_t), intent(inout) :: forces
+      integer, intent(in) :: rows(:), column   !< Numbers of unknowns. (entries)
+      real(wp), intent(in) :: values(:)        !< (entries) [kN/m]
+      integer :: i
+
+      do i = 1, size(rows)
+         if (.not. abs(values(i)) > 0.0_wp) cycle
+         forces%triplets = forces%triplets + 1
+         forces%row(forces%triplets) = rows(i)
+         forces%column(forces%triplets) = column
+         forces%value(forces%triplets) = values(i)
+      end do
+   end subroutine add_column
+
    !> Forces (12) and, if wanted, stiffness (12, 12) of a pair of edges in local coordinates; `missed` is the largest
    !> share of the master edge by which a normal misses it. docs/theory/contact.md section 3. Where `missed` > 0 the
    !> response is of no use.

@@ -6,7 +6,7 @@ module contact_types
    implicit none (type, external)
    private
    public :: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
-   public :: contact_options_t, has_friction, contact_status_t, contact_fail, contact_message, is_finite
+   public :: contact_options_t, has_friction, contact_status_t, contact_message, is_finite
    public :: CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
              CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION
 
@@ -53,20 +53,6 @@ contains
 
       has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
    end function has_friction
-
-   !> A status with the place and the value that are wrong.
-   pure function contact_fail(code, index, master, value) result(status)
-      integer, intent(in) :: code
-      integer, intent(in), optional :: index
-      logical, intent(in), optional :: master
-      real(wp), intent(in), optional :: value   !< In its own unit.
-      type(contact_status_t) :: status
-
-      status%code = code
-      if (present(index)) status%index = index
-      if (present(master)) status%master = master
-      if (present(value)) status%value = value
-   end function contact_fail
 
    !> A status in words: what, where, the value, what is allowed and what to do. Cut to the length of the text.
    pure subroutine contact_message(status, text)

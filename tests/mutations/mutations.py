@@ -303,7 +303,7 @@ CONTACT = [
                                                  "result%force(size(pull) + 1:) = -0.0_wp*pull")),
     ("zeroed displacements relax the springs of a plate", (JOINED, "if (allocated(t%spring)) stretched(:, t%slave%node) =",
                                                           "if (.false.) stretched(:, t%slave%node) =")),
-    ("slopes against the values within the step", (JOINED, "values(place) + share*value(k)", "values(place) + value(k)")),
+    ("slopes against the values within the step", (JOINED, "+ share*forces%value(k)", "+ forces%value(k)")),
     ("a contact acts in every stage", (JOINED, "if (.not. t%acts) cycle\n            call probe_one(t, x, with_slopes",
                                           "call probe_one(t, x, with_slopes")),
     ("drainage without coverage", (DRAINAGE, "t%probe%whole >= HALF", "t%probe%whole > 0.0_wp")),
