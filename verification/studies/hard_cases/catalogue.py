@@ -52,14 +52,14 @@ class Setting:
 
 SETTINGS = (
     Setting("default"),
-    Setting("classic", rule="classic", rho_e=0.0),
-    Setting("paper's remedy", rule="threshold", rho_e=0.0),
+    Setting("classic", rule="classic", rho_e=0.0, keys=(("isotropic", 1),)),
+    Setting("paper's remedy", rule="threshold", rho_e=0.0, keys=(("isotropic", 1),)),
     Setting("repositioning", rule="repositioning", rho_e=0.0),
     Setting("return point, no elastic domain", rule="return_point", rho_e=0.0),
-    Setting("isotropic memory", keys=(("isotropic", 2),)),
+    Setting("no isotropic memory", keys=(("isotropic", 1),)),
     Setting("cyclic preloading", keys=(("c_chi", 0.26),)),
     Setting("fluidity", keys=(("c_ell", 200.0),)),
-    Setting("all memories", keys=(("isotropic", 2), ("c_chi", 0.26), ("c_ell", 200.0), ("hysteresis", 1))),
+    Setting("all memories", keys=(("c_chi", 0.26), ("c_ell", 200.0), ("hysteresis", 1))),
     Setting("scheme 2", scheme=2),
     Setting("scheme 3", scheme=3),
     Setting("loose", tolerance=1e-3),
