@@ -305,7 +305,7 @@ contains
       type(soil_t), intent(in) :: soil
       real(wp), intent(in) :: e, p
 
-      bulk_modulus_of = bulk_modulus(soil%laws, e, p)
+      bulk_modulus_of = bulk_modulus(soil%laws%elastic, e, p)
    end function bulk_modulus_of
 
    !> f(zeta) at a point.
@@ -323,7 +323,7 @@ contains
       type(soil_t), intent(in) :: soil
       real(wp), intent(in) :: p
 
-      critical_void_ratio_of = critical_void_ratio(soil%laws, 1.0_wp, p)
+      critical_void_ratio_of = critical_void_ratio(soil%laws%critical, 1.0_wp, p)
    end function critical_void_ratio_of
 
    !> M^b of a state parameter.
@@ -331,7 +331,7 @@ contains
       type(soil_t), intent(in) :: soil
       real(wp), intent(in) :: psi
 
-      bounding_ratio_of = bounding_ratio(soil%laws, psi)
+      bounding_ratio_of = bounding_ratio(soil%laws%critical, psi)
    end function bounding_ratio_of
 
    !> Norm of the bounding stress ratio in the direction of r at M^b = m_b.
@@ -339,7 +339,7 @@ contains
       type(soil_t), intent(in) :: soil
       real(wp), intent(in) :: r(6), m_b
 
-      bounding_norm_of = bounding_norm(soil%laws, r, norm(r), m_b)
+      bounding_norm_of = bounding_norm(soil%laws%critical, r, norm(r), m_b)
    end function bounding_norm_of
 
    !> S_w of a main curve, of drying or of wetting, at a suction [kPa] and a void ratio.

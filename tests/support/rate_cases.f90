@@ -71,7 +71,8 @@ contains
       this%d_pc = 0.0_wp
       if (kind == 'unsaturated') this%p_c = log_uniform(random, 1.0_wp, 1.0e4_wp)
       if (kind == 'critical') then
-         this%e = this%par%n_c*(p + this%par%alpha_csl)**(-this%par%lambda) + uniform(random, -1.0e-3_wp, 1.0e-3_wp)
+         this%e = this%par%critical%n_c*(p + this%par%critical%alpha_csl)**(-this%par%critical%lambda) &
+            + uniform(random, -1.0e-3_wp, 1.0e-3_wp)
       end if
       this%z = uniform(random, 0.0_wp, 4.0_wp)*random_deviator(random)
       this%r_in = 0.0_wp
@@ -79,7 +80,7 @@ contains
       this%d_strain = 1.0e-3_wp*random_tensor(random)
       call evaluate(this, this%d_strain, 0.0_wp, w)
       r = random_deviator(random)
-      r = uniform(random, 0.0_wp, 1.1_wp)*bounding_norm(this%par, r, norm(r), w%m_b)*r
+      r = uniform(random, 0.0_wp, 1.1_wp)*bounding_norm(this%par%critical, r, norm(r), w%m_b)*r
       this%sigma = p*(r + IDENTITY)
       this%r_in = r - uniform(random, 0.0_wp, 1.0_wp)*random_deviator(random)
       select case (kind)
@@ -127,7 +128,7 @@ contains
       this%r_in = 0.0_wp
       this%sigma = p*IDENTITY
       call evaluate(this, this%d_strain, 0.0_wp, w)
-      r = uniform(random, 0.0_wp, 1.05_wp)*bounding_norm(this%par, r, norm(r), w%m_b)*r
+      r = uniform(random, 0.0_wp, 1.05_wp)*bounding_norm(this%par%critical, r, norm(r), w%m_b)*r
       this%sigma = p*(r + IDENTITY)
       this%r_in = r
       ! t does not depend on the memory

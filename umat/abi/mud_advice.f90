@@ -63,7 +63,7 @@ contains
                 ' in the unit of p_atm = '//trim(number(par%p_atm))//': grains crush there, which no parameter '// &
                 'knows; give stresses in the unit of p_atm, or PROPS in that of the stresses'
       case (ABOVE_LINE)
-         line = statev(S_VOID_RATIO)*crowding(par, stress, statev)**(-par%lambda)
+         line = statev(S_VOID_RATIO)*crowding(par, stress, statev)**(-par%critical%lambda)
          text = 'the void ratio of the start is '//trim(number(statev(S_VOID_RATIO)))//', far above the '// &
                 'compression line, which is at '//trim(number(line))//' for its stress: soil as '// &
                 'loose as that bears less than half of a mean effective stress of '//trim(number(p))// &
@@ -98,7 +98,8 @@ contains
 
       call stress_ratio(par, -stress, p, r)
       f = bonding_factor(par%suction, statev(S_SUCTION), statev(S_SATURATION))
-      crowding = p/compression_image(par, f, statev(S_VOID_RATIO))*(1.0_wp + 3.0_wp*ddot(r, r)/par%m_c**2)
+      crowding = p/compression_image(par%critical, f, statev(S_VOID_RATIO)) &
+                 *(1.0_wp + 3.0_wp*ddot(r, r)/par%critical%m_c**2)
    end function crowding
 
    !> Largest credible pressure, in the unit of p_atm.

@@ -257,7 +257,7 @@ contains
       real(wp) :: p, r(6), largest
 
       call stress_ratio(par, state%sigma, p, r)
-      largest = FARTHEST_START*norm(limited(par, state%psi, r))
+      largest = FARTHEST_START*norm(limited(par%critical, state%psi, r))
       if (norm(r) > largest) status = fail(MUD_BAD_INPUT, ON_STRESS, ON_STRESS_RATIO, SQRT_3_2*norm(r), 0.0_wp, &
                                            SQRT_3_2*largest)
    end subroutine check_strength

@@ -35,7 +35,8 @@ contains
 
       lifted = sigma
       if (trace(sigma) >= 3.0_wp*par%p_min*(1.0_wp - AT_LIMIT)) return
-      lifted = par%p_min*(IDENTITY + limited(par, psi_of(par, law, e, p_c, par%p_min), deviator(sigma)/par%p_min))
+      lifted = par%p_min*(IDENTITY + limited(par%critical, psi_of(par%critical, law, e, p_c, par%p_min), &
+                                             deviator(sigma)/par%p_min))
    end function lifted
 
    !> True where the cut-off does not let a mean stress be. sigma' in the unit of p_atm. docs/theory/material.md section
@@ -78,7 +79,8 @@ contains
       if (state%gap > 0.0_wp) then
          parting = state%e - state%gap
       else
-         parting = max(critical_void_ratio(par, 1.0_wp, par%p_min), 1.0_wp/max(par%c_h, tiny(1.0_wp)))
+         parting = max(critical_void_ratio(par%critical, 1.0_wp, par%p_min), &
+                       1.0_wp/max(par%hardening%c_h, tiny(1.0_wp)))
          parting = max(min(parting, STIFF_ABOVE), state%e)
       end if
    end function parting
@@ -133,7 +135,7 @@ contains
       real(wp) :: r(6), e
 
       e = min(void_ratio_at(inc, time + h), parts)
-      r = r0 + deviator((2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min*h)*inc%d_strain)
-      r = limited(par, psi_of(par, inc%suction, e, suction_at(inc, time + h), par%p_min), r)
+      r = r0 + deviator((2.0_wp*shear_modulus(par%elastic, e, par%p_min)/par%p_min*h)*inc%d_strain)
+      r = limited(par%critical, psi_of(par%critical, inc%suction, e, suction_at(inc, time + h), par%p_min), r)
    end function slide
 end module mud_cutoff

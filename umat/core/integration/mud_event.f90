@@ -130,6 +130,6 @@ contains
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time, p
 
-      psi_at = psi_of(par, inc%suction, void_ratio_at(inc, time), suction_at(inc, time), p)
+      psi_at = psi_of(par%critical, inc%suction, void_ratio_at(inc, time), suction_at(inc, time), p)
    end function psi_at
 end module mud_event

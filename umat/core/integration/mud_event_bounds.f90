@@ -29,7 +29,7 @@ contains
       real(wp) :: p, r(6)
 
       call stress_ratio(par, y(1:6), p, r)
-      f = allowed_excess(par, inc, trial) - excess(par, psi_at(par, inc, time, p), r)
+      f = allowed_excess(par, inc, trial) - excess(par%critical, psi_at(par, inc, time, p), r)
    end function bounds_function
 
    !> Changes of the excess [-].
@@ -56,6 +56,6 @@ contains
       real(wp) :: p, r(6)
 
       call stress_ratio(par, trial%y0(1:6), p, r)
-      allowed_excess = max(excess(par, psi_at(par, inc, trial%time, p), r), LARGEST_EXCESS)
+      allowed_excess = max(excess(par%critical, psi_at(par, inc, trial%time, p), r), LARGEST_EXCESS)
    end function allowed_excess
 end module mud_event_bounds

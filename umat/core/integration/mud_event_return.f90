@@ -26,7 +26,7 @@ contains
       real(wp) :: p, r(6)
 
       call stress_ratio(par, y(1:6), p, r)
-      f = -beyond_target(par, trial%process, r, bounding_ratio(par, psi_at(par, inc, time, p)))
+      f = -beyond_target(par, trial%process, r, bounding_ratio(par%critical, psi_at(par, inc, time, p)))
    end function return_function
 
    !> Changes of the distance beyond the target, at a state parameter [-].
@@ -38,9 +38,9 @@ contains
       real(wp) :: slopes(LANES)
       real(wp) :: m_b
 
-      m_b = bounding_ratio(par, psi)
+      m_b = bounding_ratio(par%critical, psi)
       slopes = contractions(c%r, trial%process%direction)
       if (is_limited(par, trial%process, m_b)) &
-         slopes = slopes - (target_limit(par, trial%process)*bounding_slope(par, psi, m_b))*c%psi
+         slopes = slopes - (target_limit(par, trial%process)*bounding_slope(par%critical, psi, m_b))*c%psi
    end function slopes_of_return
 end module mud_event_return

@@ -23,6 +23,6 @@ contains
       size = inc%length
       if (abs(inc%d_pc) <= 0.0_wp) return
       call stress_ratio(par, state%sigma, p, r)
-      size = size + abs(inc%d_pc)/bulk_modulus(par, soil_void_ratio(state), p)
+      size = size + abs(inc%d_pc)/bulk_modulus(par%elastic, soil_void_ratio(state), p)
    end function extent_of
 end module mud_extent

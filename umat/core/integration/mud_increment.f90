@@ -63,7 +63,7 @@ contains
       if (has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)) then
          call loading_strain(inc, mode, time, loading, aside, from_centre)
          call rate_at(par, y, at, loading, inc%d_pc, mode, w, near)
-         g = 2.0_wp*centre_modulus(par, e, w%k, from_centre)
+         g = 2.0_wp*centre_modulus(par%elastic, e, w%k, from_centre)
          volume = trace(aside)
          w%d_p = w%d_p + w%k*volume
          w%d_sigma = w%d_sigma + g*aside

@@ -30,8 +30,8 @@ contains
       call stress_ratio(par, sigma, p, r)
       e = void_ratio_at(inc, time)
       closed = p_follows(par, sigma) .and. &
-               compressed(par, pressure_root(par, e, bulk_modulus(par, e, p)), log(e/void_ratio_at(inc, time + h))) &
-               >= par%p_min
+               compressed(par%elastic, pressure_root(par%elastic, e, bulk_modulus(par%elastic, e, p)), &
+                          log(e/void_ratio_at(inc, time + h))) >= par%p_min
    end function has_closed_form
 
    !> The integrated vector after such a substep. docs/theory/memory-rules.md section 4.3.
@@ -44,10 +44,10 @@ contains
 
       call stress_ratio(par, y(1:6), p, r)
       e = void_ratio_at(inc, time)
-      k = bulk_modulus(par, e, p)
-      y(1:6) = deviator(y(1:6)) + (2.0_wp*h*centre_modulus(par, e, k, volume_from_centre(inc, time))) &
+      k = bulk_modulus(par%elastic, e, p)
+      y(1:6) = deviator(y(1:6)) + (2.0_wp*h*centre_modulus(par%elastic, e, k, volume_from_centre(inc, time))) &
                *deviator(inc%d_strain) &
-               + compressed(par, pressure_root(par, e, k), log(e/void_ratio_at(inc, time + h)))*IDENTITY
+               + compressed(par%elastic, pressure_root(par%elastic, e, k), log(e/void_ratio_at(inc, time + h)))*IDENTITY
       call move_numbers(par, inc%d_v, h, y)
    end subroutine move_inside
 end module mud_inside_domain

@@ -35,7 +35,7 @@ contains
       real(wp) :: e
 
       e = void_ratio_at(inc, time)
-      m = measure(par, w%bond, e, w%p, w%k)
+      m = measure(par%margin, w%bond, e, w%p, w%k)
       drive = (m%by_p*w%k - m%by_e*(1.0_wp + e))*(inc%d_v + w%swell) + m%by_pc*inc%d_pc &
               + ROUNDING*abs(m%by_p)*w%k*inc%length
    end function drive_of_margin
@@ -84,7 +84,7 @@ contains
       e = void_ratio_at(inc, time)
       p = max(trace(sigma)/3.0_wp, par%p_min)
       bond = bonding(inc%suction, suction_at(inc, time), e)
-      m = measure(par, bond, e, p, bulk_modulus(par, e, p))
+      m = measure(par%margin, bond, e, p, bulk_modulus(par%elastic, e, p))
    end function measure_at
 
    !> Margins at the stages of a substep h below the memory [-], and at what rates contraction adds to them. What it
@@ -106,7 +106,7 @@ contains
       first = 0.0_wp
       do i = 1, merge(1, inc%scheme%stages, trial%closed)
          e = void_ratio_at(inc, trial%time + inc%scheme%node(i)*h)
-         m = measure(par, trial%w(i)%bond, e, trial%w(i)%p, trial%w(i)%k)
+         m = measure(par%margin, trial%w(i)%bond, e, trial%w(i)%p, trial%w(i)%k)
          if (i == 1) first = m%value
          row = (i - 1)*(i - 2)/2
          margin(i) = trial%margin + m%value - first &

@@ -132,7 +132,7 @@ contains
       type(params_t), intent(in) :: par
       type(interrupted_t), intent(in) :: process
 
-      limit = SQRT_2_3*lode_factor(par, ddot(square(process%direction), process%direction))/SURFACE_MARGIN
+      limit = SQRT_2_3*lode_factor(par%critical, ddot(square(process%direction), process%direction))/SURFACE_MARGIN
    end function target_limit
 
    !> True where the bounding surface sets the target. m_b is M^b [-]; docs/theory/memory-rules.md section 3.4.

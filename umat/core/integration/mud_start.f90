@@ -81,7 +81,8 @@ contains
       end if
       call note_saturation(law%retention_t, sat, state%s_w)
       if (state%gap > 0.0_wp .and. is_bonded(law, state%p_c)) bond = bonding(law, state%p_c, soil_void_ratio(state))
-      state%psi = state_parameter(par, bond%f, soil_void_ratio(state), max(trace(state%sigma)/3.0_wp, par%p_min))
+      state%psi = state_parameter(par%critical, bond%f, soil_void_ratio(state), &
+                                  max(trace(state%sigma)/3.0_wp, par%p_min))
    end subroutine finish_state
 
    !> True if a principal stress is negative (tensile): Sylvester's criterion fails. s is an effective stress,

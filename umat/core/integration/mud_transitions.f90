@@ -64,7 +64,7 @@ contains
          call first_rate(par, it)
          outwards = (2.0_wp*it%trial%w(1)%g)*ddot(it%inc%d_strain, r) - (it%trial%w(1)%k*it%inc%d_v)*ddot(r, r)
          if (outwards > 0.0_wp) it%trial%pressed = &
-            excess(par, psi_at(par, it%inc, it%trial%time, p), r) >= LARGEST_EXCESS
+            excess(par%critical, psi_at(par, it%inc, it%trial%time, p), r) >= LARGEST_EXCESS
          if (it%trial%pressed) it%trial%mode = MODE_ORDINARY
       end if
 

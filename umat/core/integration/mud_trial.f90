@@ -109,7 +109,7 @@ contains
       error = 0.0_wp
       if (trial%closed) return
       call error_vector(scheme, trial%rates, h, delta)
-      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(Y_Z:Y_Z_END))/par%z_max, &
+      error = max(norm(delta(1:6))/max(norm(trial%y(1:6)), smallest), norm(delta(Y_Z:Y_Z_END))/par%flow%z_max, &
                   abs(delta(Y_SHEAR))/PLASTIC_SHEAR_SCALE, error_of_numbers(par, trial%y, delta, trial%w(1)%own%bends))
    end function error_norm
 end module mud_trial

@@ -4,20 +4,27 @@
 module mud_critical_state
    use mud_branchless, only: larger, smaller
    use mud_kinds, only: wp, SQRT_2_3, SQRT_6, NOTHING
-   use mud_params, only: params_t
    use mud_tensor, only: ddot, deviator, square
    implicit none (type, external)
    private
-   public :: critical_void_ratio, state_parameter, state_parameter_slopes, bounding_ratio, bounding_slope, &
+   public :: critical_t, critical_void_ratio, state_parameter, state_parameter_slopes, bounding_ratio, bounding_slope, &
              dilatancy_ratio, dilatancy_slope, lode_factor, lode_slope, lode_gradient, bounding_norm, compression_image
 
    !> |n psi| and |ln alpha_hat| are limited to these, to prevent overflow: only absurd parameters reach the limits [-].
    real(wp), parameter :: EXPONENT_LIMIT = 20.0_wp, IMAGE_LIMIT = 50.0_wp
+
+   !> Parameters of the lines and of the stress ratios, as in mud_registry.
+   type :: critical_t
+      real(wp) :: n_c, lambda, alpha_csl, n_l, m_c, n_b, n_d
+      real(wp) :: c           !< 1 without Lode dependence too: a circle [-].
+      real(wp) :: c4          !< c**4, for the Lode function [-].
+      real(wp) :: lode_bend   !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
+   end type critical_t
 contains
    !> e_c [-] at a mean effective stress [kPa] and a bonding factor [-], paper eq. (8). docs/theory/material.md section
    !> 3.2; p + alpha_csl > 0 is not checked.
    pure real(wp) function critical_void_ratio(par, f, p) result(e_c)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: f, p
 
       e_c = par%n_c*f*(p + par%alpha_csl)**(-par%lambda)
@@ -26,7 +33,7 @@ contains
    !> State parameter psi = e - e_c [-] at a bonding factor f [-] and a mean effective stress [kPa]. Been & Jefferies
    !> (1985); docs/theory/material.md section 3.2.
    pure real(wp) function state_parameter(par, f, e, p) result(psi)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: f, e, p
 
       psi = e - critical_void_ratio(par, f, p)
@@ -34,7 +41,7 @@ contains
 
    !> Slopes of psi by f [-] and p [1/kPa]; that by e is 1.
    pure subroutine state_parameter_slopes(par, psi, f, e, p, by_f, by_p)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: psi, f, e, p
       real(wp), intent(out) :: by_f, by_p
 
@@ -45,7 +52,7 @@ contains
    !> M^b [-] in triaxial compression at a state parameter [-], paper eq. (12). The exponent is kept within 0 and 20;
    !> docs/theory/material.md section 3.3.
    pure real(wp) function bounding_ratio(par, psi) result(m_b)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: psi
 
       m_b = par%m_c*exp(min(max(-par%n_b*psi, 0.0_wp), EXPONENT_LIMIT))
@@ -53,7 +60,7 @@ contains
 
    !> dM^b/dpsi [-] where M^b is m_b; 0 for psi >= 0, the upper bound of the exponent is left out.
    pure real(wp) function bounding_slope(par, psi, m_b) result(slope)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: psi, m_b
 
       slope = merge(-par%n_b*m_b, 0.0_wp, psi < 0.0_wp)
@@ -62,7 +69,7 @@ contains
    !> M^d [-] in triaxial compression at a state parameter [-], paper eq. (10). The exponent is kept within -20 and 20;
    !> docs/theory/material.md section 3.3.
    pure real(wp) function dilatancy_ratio(par, psi) result(m_d)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: psi
 
       m_d = par%m_c*exp(min(max(par%n_d*psi, -EXPONENT_LIMIT), EXPONENT_LIMIT))
@@ -70,7 +77,7 @@ contains
 
    !> dM^d/dpsi [-] where M^d is m_d; the bounds of the exponent are left out.
    pure real(wp) function dilatancy_slope(par, m_d) result(slope)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: m_d
 
       slope = par%n_d*m_d
@@ -80,7 +87,7 @@ contains
    !> extension. Rebuilt: the fourth-root form, convex for c >= 0.611. 1 where the Lode dependence is off, cos3t kept
    !> within -1 and 1; docs/theory/material.md section 3.4.
    pure real(wp) function lode_factor(par, trace_cube) result(g)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: trace_cube
       real(wp) :: cos_3t
 
@@ -91,7 +98,7 @@ contains
    !> d g / d tr(n^3) [-]. With g**4 = 2 c**4/(1 + c**4 - (1 - c**4) cos3t) it is a power of g. 0 where the Lode
    !> dependence is off; docs/theory/material.md section 3.4.
    pure real(wp) function lode_slope(par, g) result(slope)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: g
 
       slope = par%lode_bend*g**5
@@ -100,7 +107,7 @@ contains
    !> g and dg/dr in the direction of a stress ratio r, r_norm = |r| [-]. The gradient is a deviator without a part
    !> along r; zeros where the Lode dependence is off, and without a direction (r = 0).
    pure subroutine lode_gradient(par, r, r_norm, g, g_r)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: r(6), r_norm
       real(wp), intent(out) :: g, g_r(6)
       real(wp) :: r2(6), cube
@@ -117,7 +124,7 @@ contains
    !> Norm of the bounding stress ratio in the direction of r, sqrt(2/3) g(r/|r|) M^b [-]. r_norm = |r| and m_b = M^b
    !> [-]; without a direction (r = 0) g is 1. docs/theory/material.md sections 3.3, 3.4.
    pure real(wp) function bounding_norm(par, r, r_norm, m_b)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: r(6), r_norm, m_b
       real(wp) :: g
 
@@ -128,7 +135,7 @@ contains
    !> Image alpha_hat [kPa] of a void ratio on the compression line, paper eq. (7) with f corrected. Void ratio
    !> and f [-]; ln alpha_hat is kept within -50 and 50; docs/theory/material.md section 3.5.
    pure real(wp) function compression_image(par, f, e) result(alpha)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: f, e
 
       alpha = exp(min(max(log(par%n_l*f/e)/par%lambda, -IMAGE_LIMIT), IMAGE_LIMIT))

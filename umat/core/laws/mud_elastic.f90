@@ -2,21 +2,25 @@
 !> Elastic moduli; docs/theory/material.md section 3.1.
 module mud_elastic
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    implicit none (type, external)
    private
-   public :: bulk_modulus, bulk_slope, shear_modulus, shear_slope, swelling_slope, elastic_tangent, add_elastic, &
-             pressure_root, compressed, centre_modulus, changed_centre_modulus, BULK_EXPONENT, SHEAR_EXPONENT, &
-             STIFF_ABOVE
+   public :: elastic_t, bulk_modulus, bulk_slope, shear_modulus, shear_slope, swelling_slope, elastic_tangent, &
+             add_elastic, pressure_root, compressed, centre_modulus, changed_centre_modulus, BULK_EXPONENT, &
+             SHEAR_EXPONENT, STIFF_ABOVE
 
    real(wp), parameter :: BULK_EXPONENT = 2.0_wp/3.0_wp, SHEAR_EXPONENT = 0.5_wp   !< Exponents of p' in K and in G [-].
    !> Void ratio of eq. (3) at which G vanishes: its square grows again beyond, where it means nothing [-].
    real(wp), parameter :: STIFF_ABOVE = 2.97_wp
+
+   !> Parameters of the moduli, as in mud_registry.
+   type :: elastic_t
+      real(wp) :: k_0, g_0, p_atm, p_min
+   end type elastic_t
 contains
    !> Bulk modulus K [kPa] at a void ratio [-] and a mean effective stress [kPa], paper eq. (2). Neither e > 0 nor p > 0
    !> is checked.
    pure real(wp) function bulk_modulus(par, e, p) result(k)
-      type(params_t), intent(in) :: par
+      type(elastic_t), intent(in) :: par
       real(wp), intent(in) :: e, p
 
       k = par%k_0*par%p_atm*(1.0_wp + e)/e*(p/par%p_atm)**BULK_EXPONENT
@@ -32,7 +36,7 @@ contains
    !> Shear modulus G [kPa], paper eq. (3). At a void ratio [-] and a mean effective stress [kPa]; p >= 0 is not
    !> checked.
    pure real(wp) function shear_modulus(par, e, p) result(g)
-      type(params_t), intent(in) :: par
+      type(elastic_t), intent(in) :: par
       real(wp), intent(in) :: e, p
 
       g = par%g_0*par%p_atm*(STIFF_ABOVE - e)**2/(1.0_wp + e)*sqrt(p/par%p_atm)
@@ -56,7 +60,7 @@ contains
 
    !> Cubic root of p'/p_atm at a void ratio [-] from K there [kPa]: eq. (2) without a power.
    pure real(wp) function pressure_root(par, e, k)
-      type(params_t), intent(in) :: par
+      type(elastic_t), intent(in) :: par
       real(wp), intent(in) :: e, k
 
       pressure_root = sqrt(k*e/((1.0_wp + e)*par%k_0*par%p_atm))
@@ -66,7 +70,7 @@ contains
    !> (p'/p_atm)^(1/3) + K_0/3 ln e does not change. `root` is that of pressure_root before; the stress is negative
    !> where the root falls below 0. docs/theory/memory-rules.md section 4.3.
    pure real(wp) function compressed(par, root, log_ratio)
-      type(params_t), intent(in) :: par
+      type(elastic_t), intent(in) :: par
       real(wp), intent(in) :: root, log_ratio
 
       compressed = par%p_atm*(root + par%k_0/3.0_wp*log_ratio)**3
@@ -89,7 +93,7 @@ contains
    !> Shear modulus [kPa] at the centre of the elastic domain, which is a volumetric strain v [-] behind a point of void
    !> ratio e [-] and bulk modulus K [kPa]. docs/theory/memory-rules.md section 4.3.
    pure real(wp) function centre_modulus(par, e, k, v) result(g)
-      type(params_t), intent(in) :: par
+      type(elastic_t), intent(in) :: par
       real(wp), intent(in) :: e, k, v
       real(wp) :: e_centre, log_ratio
 
@@ -99,7 +103,7 @@ contains
 
    !> Modulus at the centre and its slopes by ln p', e and v [kPa]; derivative of docs/theory/memory-rules.md 4.3.
    pure subroutine changed_centre_modulus(par, e, k, v, g, slopes)
-      type(params_t), intent(in) :: par
+      type(elastic_t), intent(in) :: par
       real(wp), intent(in) :: e, k, v
       real(wp), intent(out) :: g, slopes(3)
       real(wp) :: e_centre, log_ratio, p_centre, root, per_root, by_e_centre

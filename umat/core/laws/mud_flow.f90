@@ -3,14 +3,19 @@
 module mud_flow
    use mud_branchless, only: positive, smaller
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    implicit none (type, external)
    private
-   public :: dilatancy_factor, dilatancy, fabric_rate
+   public :: flow_t, dilatancy_factor, dilatancy, fabric_rate
+
+   !> Parameters of dilatancy and fabric, as in mud_registry.
+   type :: flow_t
+      real(wp) :: a_0, c_z, z_max
+      real(wp) :: fabric   !< 1, or 0: fabric does not count [-].
+   end type flow_t
 contains
    !> A_d = A_0 (1 + <z:n>) [-]. Dafalias & Manzari (2004). a_0 without fabric; docs/theory/material.md section 4.2.
    pure real(wp) function dilatancy_factor(par, a_0, z_n) result(a_d)
-      type(params_t), intent(in) :: par
+      type(flow_t), intent(in) :: par
       real(wp), intent(in) :: a_0   !< A_0 of the rate [-]
       real(wp), intent(in) :: z_n   !< z:n [-]
 
@@ -30,7 +35,7 @@ contains
    !> dz = -c_z <-L D> (z_max n + z), Dafalias & Manzari (2004); grows in dilation only. All [-], L of the rate >= 0; 0
    !> without fabric and in contraction; docs/theory/material.md section 4.3.
    pure function fabric_rate(par, loading, d, n, z) result(dz)
-      type(params_t), intent(in) :: par
+      type(flow_t), intent(in) :: par
       real(wp), intent(in) :: loading, d   !< L and D
       real(wp), intent(in) :: n(6), z(6)
       real(wp) :: dz(6)

@@ -3,13 +3,13 @@
 !> sections 3.5, 4.2 and 4.4.
 module mud_hardening
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    use mud_bonding, only: bonding_t
-   use mud_critical_state, only: compression_image
+   use mud_critical_state, only: critical_t, compression_image
    implicit none (type, external)
    private
-   public :: kinematic_modulus, kinematic_slope, KINEMATIC_EXPONENT, isotropic_t, isotropic_hardening, NO_HARDENING, &
-             shear_weight, isotropic_slopes_t, isotropic_slopes, BY_P, BY_E, BY_F, BY_F_E, BY_R, BY_R_B
+   public :: hardening_t, kinematic_modulus, kinematic_slope, KINEMATIC_EXPONENT, isotropic_t, &
+             isotropic_hardening, NO_HARDENING, shear_weight, isotropic_slopes_t, isotropic_slopes, BY_P, BY_E, &
+             BY_F, BY_F_E, BY_R, BY_R_B
 
    real(wp), parameter :: SMALLEST_VOID_TERM = 0.01_wp   !< Guard: 1 - c_h e >= it [-].
    !> Below it |delta|^theta, whose slope at zero is infinite, is an odd polynomial of the same value, slope and bend
@@ -46,19 +46,25 @@ module mud_hardening
       real(wp) :: b(BY_P:BY_R_B)   !< slopes of b [1/kPa] ...
       real(wp) :: b_f_pc           !< ... and by df/dp_c [-]
    end type isotropic_slopes_t
+
+   !> Parameters of both mechanisms, as in mud_registry.
+   type :: hardening_t
+      real(wp) :: stiffness   !< h_0 G_0 [-].
+      real(wp) :: c_h, theta, p_atm
+   end type hardening_t
 contains
    !> b_0 = h x [-], the numerator of the hardening modulus h, paper eq. (13). e [-], p' > 0 [kPa], not checked; 1 - c_h
    !> e is at least 0.01. docs/theory/material.md section 4.2.
    pure real(wp) function kinematic_modulus(par, e, p) result(b_0)
-      type(params_t), intent(in) :: par
+      type(hardening_t), intent(in) :: par
       real(wp), intent(in) :: e, p
 
-      b_0 = par%h_0*par%g_0*max(1.0_wp - par%c_h*e, SMALLEST_VOID_TERM)*sqrt(par%p_atm/p)
+      b_0 = par%stiffness*max(1.0_wp - par%c_h*e, SMALLEST_VOID_TERM)*sqrt(par%p_atm/p)
    end function kinematic_modulus
 
    !> d ln b_0/de [-]; 0 at the guard.
    pure real(wp) function kinematic_slope(par, e) result(slope)
-      type(params_t), intent(in) :: par
+      type(hardening_t), intent(in) :: par
       real(wp), intent(in) :: e
 
       slope = 0.0_wp
@@ -68,8 +74,9 @@ contains
    !> Isotropic hardening, paper eqs (4), (6), (7) with the second term of (4) restored as the change of f at constant e
    !> (mended): on the compression line ln e = ln N_l - lambda ln p' + ln f. docs/theory/material.md sections 3.5 and
    !> 4.4; the arguments are not checked.
-   pure function isotropic_hardening(par, bond, e, p, kappa, eta2, weight) result(iso)
-      type(params_t), intent(in) :: par
+   pure function isotropic_hardening(par, lines, bond, e, p, kappa, eta2, weight) result(iso)
+      type(hardening_t), intent(in) :: par
+      type(critical_t), intent(in) :: lines
       type(bonding_t), intent(in) :: bond
       real(wp), intent(in) :: e       !< void ratio [-]
       real(wp), intent(in) :: p       !< p' [kPa]
@@ -80,8 +87,8 @@ contains
       real(wp) :: delta
 
       iso%weight = weight
-      iso%approach = p/compression_image(par, bond%f, e)
-      iso%crowding = iso%approach*(1.0_wp + 2.0_wp*eta2/par%m_c**2)
+      iso%approach = p/compression_image(lines, bond%f, e)
+      iso%crowding = iso%approach*(1.0_wp + 2.0_wp*eta2/lines%m_c**2)
       delta = 1.0_wp - iso%crowding
       call signed_power(par%theta, delta, iso%f, iso%f_slope)
       iso%f = 1.0_wp - iso%f
@@ -89,14 +96,14 @@ contains
       iso%c = -e*bond%df_de/bond%f*iso%f
       iso%floored = 1.0_wp + iso%c < SMALLEST_COUPLING
       iso%share = weight*e/(1.0_wp + e)/max(1.0_wp + iso%c, SMALLEST_COUPLING)
-      iso%a = iso%share*((par%lambda - kappa)*iso%f - kappa*iso%c)
+      iso%a = iso%share*((lines%lambda - kappa)*iso%f - kappa*iso%c)
       iso%b = -iso%share*iso%f*bond%df_dpc/bond%f
    end function isotropic_hardening
 
    !> Slopes of the isotropic mechanism where it acts. Arguments as in isotropic_hardening, r_b as in shear_weight;
    !> kappa rises as the cubic root of p'.
-   pure function isotropic_slopes(par, bond, e, kappa, r_b, iso) result(slopes)
-      type(params_t), intent(in) :: par
+   pure function isotropic_slopes(lines, bond, e, kappa, r_b, iso) result(slopes)
+      type(critical_t), intent(in) :: lines
       type(bonding_t), intent(in) :: bond
       real(wp), intent(in) :: e, kappa, r_b
       type(isotropic_t), intent(in) :: iso
@@ -108,9 +115,9 @@ contains
       bonded_pc = bond%df_dpc/bond%f
       f = 0.0_wp
       f(BY_P) = -iso%f_slope*iso%crowding
-      f(BY_E) = f(BY_P)/(par%lambda*e)
-      f(BY_F) = -f(BY_P)/par%lambda
-      f(BY_R) = -iso%f_slope*iso%approach*6.0_wp/par%m_c**2
+      f(BY_E) = f(BY_P)/(lines%lambda*e)
+      f(BY_F) = -f(BY_P)/lines%lambda
+      f(BY_R) = -iso%f_slope*iso%approach*6.0_wp/lines%m_c**2
       c = -e*bonded_e*f
       c(BY_E) = c(BY_E) - bonded_e*iso%f
       c(BY_F) = c(BY_F) + e*bonded_e*iso%f
@@ -120,7 +127,7 @@ contains
       share(BY_E) = share(BY_E) + iso%share*(1.0_wp/e - 1.0_wp/(1.0_wp + e))
       share(BY_R) = share(BY_R) - iso%share/iso%weight*2.0_wp/r_b**2
       share(BY_R_B) = iso%share/iso%weight*2.0_wp*(1.0_wp - iso%weight)
-      slopes%a = (iso%a/iso%share)*share + iso%share*((par%lambda - kappa)*f - kappa*c)
+      slopes%a = (iso%a/iso%share)*share + iso%share*((lines%lambda - kappa)*f - kappa*c)
       slopes%a(BY_P) = slopes%a(BY_P) - iso%share*kappa*(iso%f + iso%c)/3.0_wp
       slopes%b = -bonded_pc*(iso%f*share + iso%share*f)
       slopes%b(BY_F) = slopes%b(BY_F) + bonded_pc*iso%share*iso%f

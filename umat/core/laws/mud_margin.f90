@@ -4,10 +4,9 @@ module mud_margin
    use mud_bonding, only: bonding_t
    use mud_elastic, only: swelling_slope
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    implicit none (type, external)
    private
-   public :: measure_t, measure, change_of_stiffness, shear_share, DEPTH
+   public :: margin_t, measure_t, measure, change_of_stiffness, shear_share, DEPTH
 
    real(wp), parameter :: DEPTH = 0.1_wp   !< u_0, over which contraction by shear ceases to count [-].
 
@@ -17,10 +16,15 @@ module mud_margin
       real(wp) :: by_p, by_e, by_pc    !< slopes by p', e, p_c [1/kPa, -, 1/kPa]
       real(wp) :: kappa                !< [-]
    end type measure_t
+
+   !> Parameters of the measure, as in mud_registry.
+   type :: margin_t
+      real(wp) :: lambda, p_atm
+   end type margin_t
 contains
    !> The measure at a bonding, a void ratio [-], a mean effective stress [kPa] and the bulk modulus there [kPa].
    pure function measure(par, bond, e, p, k) result(m)
-      type(params_t), intent(in) :: par
+      type(margin_t), intent(in) :: par
       type(bonding_t), intent(in) :: bond
       real(wp), intent(in) :: e, p, k
       type(measure_t) :: m
@@ -36,7 +40,7 @@ contains
 
    !> d by_p/dp' [1/kPa2]; kappa grows as the cubic root of p'.
    pure real(wp) function change_of_stiffness(par, m, p) result(slope)
-      type(params_t), intent(in) :: par
+      type(margin_t), intent(in) :: par
       type(measure_t), intent(in) :: m
       real(wp), intent(in) :: p
 

@@ -2,6 +2,10 @@
 !> Material parameters: from PROPS to named values, checked against the registry.
 module mud_params
    use mud_bonding, only: suction_law_t
+   use mud_critical_state, only: critical_t
+   use mud_elastic, only: elastic_t
+   use mud_flow, only: flow_t
+   use mud_hardening, only: hardening_t
    use mud_kinds, only: wp, SQRT_6
    use mud_registry, only: NPROPS, NPROPS_BASE, NPROPS_WITHOUT_PRELOADING, &
       NPROPS_WITHOUT_FLUIDITY, PROPERTIES, KIND_REAL, &
@@ -11,6 +15,7 @@ module mud_params
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, &
       P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI, P_C_ELL, P_ELL_MAX, P_P_ELL, P_R_ELL, &
       ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
+   use mud_margin, only: margin_t
    use mud_retention, only: retention_t
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
@@ -44,12 +49,14 @@ module mud_params
 
    !> Parameters of one material; names and units as in mud_registry.
    type, extends(options_t) :: params_t
-      real(wp) :: k_0, g_0, n_c, lambda, alpha_csl, n_l, theta, m_c, n_b, n_d, a_0, h_0, c_h, c_z, z_max
+      type(elastic_t) :: elastic
+      type(critical_t) :: critical
+      type(flow_t) :: flow
+      type(hardening_t) :: hardening
+      type(margin_t) :: margin         !< Isotropic memory.
       type(suction_law_t) :: suction   !< Retention and bonding.
       real(wp) :: e_0, p_atm, p_min
       logical :: isotropic, cutoff
-      real(wp) :: fabric    !< 1, or 0: fabric does not count [-].
-      real(wp) :: c         !< 1 without Lode dependence too: a circle [-].
       logical :: remembers  !< The isotropic mechanism has a memory.
       integer :: memory_rule
       real(wp) :: eps_hat, j_exp
@@ -70,8 +77,6 @@ module mud_params
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
       real(wp) :: c_chi, zeta_chi, s_chi     !< Read with preloading.
       real(wp) :: c_ell, ell_max, p_ell, r_ell   !< Read with fluidity.
-      real(wp) :: c4        !< c**4, for the Lode function [-].
-      real(wp) :: lode_bend !< sqrt(6) (1 - c**4)/(8 c**4), for its slope [-].
       real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.
    end type params_t
 contains
@@ -138,22 +143,24 @@ contains
       call check_props(props, status)
       if (status%code /= 0) return
 
-      params%k_0 = props(P_K_0)
-      params%g_0 = props(P_G_0)
-      params%n_c = props(P_N_C)
-      params%lambda = props(P_LAMBDA)
-      params%alpha_csl = props(P_ALPHA_CSL)
-      params%n_l = props(P_N_L)
-      params%theta = props(P_THETA)
-      params%m_c = props(P_M_C)
-      params%c = props(P_C)
-      params%n_b = props(P_N_B)
-      params%n_d = props(P_N_D)
-      params%a_0 = props(P_A_0)
-      params%h_0 = props(P_H_0)
-      params%c_h = props(P_C_H)
-      params%c_z = props(P_C_Z)
-      params%z_max = props(P_Z_MAX)
+      params%elastic%k_0 = props(P_K_0)
+      params%elastic%g_0 = props(P_G_0)
+      params%critical%n_c = props(P_N_C)
+      params%critical%lambda = props(P_LAMBDA)
+      params%critical%alpha_csl = props(P_ALPHA_CSL)
+      params%critical%n_l = props(P_N_L)
+      params%hardening%theta = props(P_THETA)
+      params%critical%m_c = props(P_M_C)
+      params%critical%c = props(P_C)
+      params%critical%n_b = props(P_N_B)
+      params%critical%n_d = props(P_N_D)
+      params%flow%a_0 = props(P_A_0)
+      params%hardening%stiffness = props(P_H_0)*props(P_G_0)
+      params%hardening%p_atm = props(P_P_ATM)
+      params%margin = margin_t(props(P_LAMBDA), props(P_P_ATM))
+      params%hardening%c_h = props(P_C_H)
+      params%flow%c_z = props(P_C_Z)
+      params%flow%z_max = props(P_Z_MAX)
       params%suction%b_1 = props(P_B_1)
       params%suction%b_2 = props(P_B_2)
       params%suction%s_max = props(P_S_MAX)
@@ -165,14 +172,16 @@ contains
       params%e_0 = props(P_E_0)
       params%p_atm = props(P_P_ATM)
       params%suction%p_atm = params%p_atm
+      params%elastic%p_atm = params%p_atm
       params%p_min = minimum_stress(props)
+      params%elastic%p_min = params%p_min
       params%largest_stress = LARGEST_STRESS*stress_unit(props)
       params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
       params%suction%bonds = whole(props(P_BONDING)) == 1
-      params%fabric = real(whole(props(P_FABRIC)), wp)
+      params%flow%fabric = real(whole(props(P_FABRIC)), wp)
       params%isotropic = whole(props(P_ISOTROPIC)) /= ISOTROPIC_NONE
       params%remembers = whole(props(P_ISOTROPIC)) == ISOTROPIC_REMEMBERS
-      if (whole(props(P_LODE)) == 0) params%c = 1.0_wp
+      if (whole(props(P_LODE)) == 0) params%critical%c = 1.0_wp
       params%memory_rule = whole(props(P_MEMORY_RULE))
       params%eps_hat = props(P_EPS_HAT)
       params%j_exp = props(P_J_EXP)
@@ -202,8 +211,8 @@ contains
          params%p_ell = threshold_of_fluidity(props)
          params%r_ell = props(P_R_ELL)
       end if
-      params%c4 = params%c**4
-      params%lode_bend = SQRT_6*(1.0_wp - params%c4)/(8.0_wp*params%c4)
+      params%critical%c4 = params%critical%c**4
+      params%critical%lode_bend = SQRT_6*(1.0_wp - params%critical%c4)/(8.0_wp*params%critical%c4)
 
       params%floored = props(P_X_0) > 0.0_wp
       params%x_floor = merge(props(P_X_0), NO_FLOOR, params%floored)

@@ -2,9 +2,8 @@
 !> Excess of a state over the bounding surface, for events and the tension cut-off.
 module mud_bounding
    use mud_kinds, only: wp
-   use mud_params, only: params_t
    use mud_bonding, only: suction_law_t, bonding_t, bonding
-   use mud_critical_state, only: state_parameter, bounding_ratio, bounding_norm
+   use mud_critical_state, only: critical_t, state_parameter, bounding_ratio, bounding_norm
    use mud_tensor, only: norm
    implicit none (type, external)
    private
@@ -12,7 +11,7 @@ module mud_bounding
 contains
    !> State parameter of a state [-]. docs/theory/material.md section 3.2.
    pure real(wp) function psi_of(par, law, e, p_c, p) result(psi)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       type(suction_law_t), intent(in) :: law
       real(wp), intent(in) :: e, p_c, p   !< [-, kPa, kPa]
       type(bonding_t) :: bond
@@ -24,7 +23,7 @@ contains
    !> |r| over the norm of the bounding surface in its direction, minus 1 [-]. psi and r [-]; docs/theory/material.md
    !> section 3.3. -1 for r = 0.
    pure real(wp) function excess(par, psi, r)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: psi, r(6)
       real(wp) :: r_norm
 
@@ -35,7 +34,7 @@ contains
    !> A stress ratio, shortened to the bounding surface where it is beyond. psi, r and the result [-];
    !> docs/theory/material.md section 6.2.
    pure function limited(par, psi, r) result(r_limited)
-      type(params_t), intent(in) :: par
+      type(critical_t), intent(in) :: par
       real(wp), intent(in) :: psi, r(6)
       real(wp) :: r_limited(6), beyond
 

@@ -106,7 +106,7 @@ contains
 
       ! Where r along t is below the dilatancy surface of every Lode angle D is not negative there, and beta positive.
       known = guarded .and. start > 0.0_wp .and. start < 1.0_wp .and. &
-              arc%r_t <= min(par%c, 1.0_wp)*eq%r_d_1
+              arc%r_t <= min(par%critical%c, 1.0_wp)*eq%r_d_1
       side = 1.0_wp
       if (.not. known) then
          call evaluate_direction(par, eq, arc, 0.0_wp, w%moduli_t, at)
@@ -357,8 +357,8 @@ contains
          s(i) = tau*(1.0_wp + c(i))
       end do
       do i = 1, POINTS
-         lode(i) = lode_factor(par, trace_cube(arc, c(i), s(i)))
-         a_d(i) = dilatancy_factor(par, eq%a_0, c(i)*arc%z_t + s(i)*arc%z_q)
+         lode(i) = lode_factor(par%critical, trace_cube(arc, c(i), s(i)))
+         a_d(i) = dilatancy_factor(par%flow, eq%a_0, c(i)*arc%z_t + s(i)*arc%z_q)
       end do
       do i = 1, POINTS
          m%r_n = c(i)*arc%r_t + s(i)*arc%r_q
@@ -386,8 +386,8 @@ contains
       m%r_n = at%cosine*arc%r_t + at%sine*arc%r_q
       m%x = at%cosine*arc%x_t + at%sine*arc%x_q
       m%z_n = at%cosine*arc%z_t + at%sine*arc%z_q
-      m%a_d = dilatancy_factor(par, eq%a_0, m%z_n)
-      m%lode = lode_factor(par, trace_cube(arc, at%cosine, at%sine))
+      m%a_d = dilatancy_factor(par%flow, eq%a_0, m%z_n)
+      m%lode = lode_factor(par%critical, trace_cube(arc, at%cosine, at%sine))
       m%r_b = eq%r_b_1*m%lode
       m%r_d = eq%r_d_1*m%lode
       call find_moduli(eq, m)
@@ -409,7 +409,7 @@ contains
       dr = at%cosine*arc%r_q - at%sine*arc%r_t
       dx = at%cosine*arc%x_q - at%sine*arc%x_t
       dz = at%cosine*arc%z_q - at%sine*arc%z_t
-      d_lode = SQRT_2_3*lode_slope(par, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
+      d_lode = SQRT_2_3*lode_slope(par%critical, w%lode)*trace_cube_slope(arc, at%cosine, at%sine)
       dd = s%d_r*dr + s%d_z*dz + s%d_r_d*w%m_d*d_lode
       if (w%own%bends) dd = dd + s%d_x*dx
       dh = s%h_r*dr + s%h_z*dz + s%h_x*dx + (s%h_r_d*w%m_d + s%h_r_b*w%m_b)*d_lode

@@ -107,7 +107,7 @@ contains
       else
          s%d_r = -at%a_d
          s%d_r_d = at%a_d
-         if (at%z_n > 0.0_wp) s%d_z = par%fabric*w%a_0*(at%r_d - at%r_n)
+         if (at%z_n > 0.0_wp) s%d_z = par%flow%fabric*w%a_0*(at%r_d - at%r_n)
          if (w%own%bends .and. at%d > 0.0_wp) then
             f = at%bent
             s%d_r = f*s%d_r

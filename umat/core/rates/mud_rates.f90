@@ -145,14 +145,14 @@ contains
       w%r_norm = norm(w%r)
       w%r_moved = w%r - at%r_in
       w%z = z
-      w%k = bulk_modulus(par, at%e, w%p)
-      w%g = shear_modulus(par, at%e, w%p)
+      w%k = bulk_modulus(par%elastic, at%e, w%p)
+      w%g = shear_modulus(par%elastic, at%e, w%p)
       w%bond = at%bond
-      w%psi = state_parameter(par, w%bond%f, at%e, w%p)
-      w%m_b = bounding_ratio(par, w%psi)
-      w%m_d = dilatancy_ratio(par, w%psi)
-      w%a_0 = par%a_0
-      w%b_0 = kinematic_modulus(par, at%e, w%p)
+      w%psi = state_parameter(par%critical, w%bond%f, at%e, w%p)
+      w%m_b = bounding_ratio(par%critical, w%psi)
+      w%m_d = dilatancy_ratio(par%critical, w%psi)
+      w%a_0 = par%flow%a_0
+      w%b_0 = kinematic_modulus(par%hardening, at%e, w%p)
    end subroutine evaluate_point
 
    !> Share of the isotropic mechanism that shear leaves at a point that is evaluated [-].
@@ -160,7 +160,7 @@ contains
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
 
-      weight = shear_weight(w%r_norm, bounding_norm(par, w%r, w%r_norm, w%m_b))
+      weight = shear_weight(w%r_norm, bounding_norm(par%critical, w%r, w%r_norm, w%m_b))
    end function weight_at
 
    !> The isotropic mechanism there, at a void ratio [-].
@@ -170,7 +170,8 @@ contains
       type(rate_t), intent(in) :: w
       type(isotropic_t) :: iso
 
-      iso = isotropic_hardening(par, w%bond, e, w%p, swelling_slope(w%k, e, w%p), 1.5_wp*w%r_norm**2, weight)
+      iso = isotropic_hardening(par%hardening, par%critical, w%bond, e, w%p, swelling_slope(w%k, e, w%p), &
+                                1.5_wp*w%r_norm**2, weight)
    end function hardening_at
 
    !> Loading index, direction and rate of p' with or without the isotropic mechanism.
@@ -231,7 +232,7 @@ contains
       type(rate_t), intent(inout) :: w
 
       w%d_sigma = 2.0_wp*w%g*(d_e - w%l*w%n) + w%d_p*IDENTITY
-      w%d_z = fabric_rate(par, w%l, w%d, w%n, w%z)
+      w%d_z = fabric_rate(par%flow, w%l, w%d, w%n, w%z)
       w%d_eps_q = SQRT_2_3*w%l
    end subroutine finish_rate
 end module mud_rates

@@ -38,8 +38,8 @@ contains
       e = soil_void_ratio(state)
       from_centre = 0.0_wp
       if (par%rho_e > 0.0_wp) from_centre = trace(state%from_centre)
-      k = bulk_modulus(par, e, p)
-      blocks%dsig_deps = elastic_tangent(k, centre_modulus(par, e, k, from_centre))
+      k = bulk_modulus(par%elastic, e, p)
+      blocks%dsig_deps = elastic_tangent(k, centre_modulus(par%elastic, e, k, from_centre))
       blocks%dsig_dpc = 0.0_wp
    end subroutine elastic_blocks
 
@@ -74,7 +74,7 @@ contains
       real(wp), intent(inout) :: c(6, 6)
       real(wp) :: nu(6), along(6), elastic(6, 6)
 
-      elastic = elastic_tangent(w%k, centre_modulus(par, state%e, w%k, trace(end_in_domain(inc))))
+      elastic = elastic_tangent(w%k, centre_modulus(par%elastic, state%e, w%k, trace(end_in_domain(inc))))
       along = 0.0_wp
       nu = 0.0_wp
       if (mode /= MODE_ELASTIC) then

@@ -30,7 +30,7 @@ contains
          with_turn = bonding_with_turn(law, bond, p_c, e)
          df = df + with_turn(1)*d_turn
       end if
-      call state_parameter_slopes(par, state_parameter(par, bond%f, e, p), bond%f, e, p, by_f, by_p)
+      call state_parameter_slopes(par%critical, state_parameter(par%critical, bond%f, e, p), bond%f, e, p, by_f, by_p)
       change = de + by_f*df + by_p*dp
    end function change_of_psi
 
@@ -44,10 +44,10 @@ contains
       change = 0.0_wp
       r_norm = norm(r)
       if (r_norm <= 0.0_wp) return
-      m_b = bounding_ratio(par, psi)
-      call lode_gradient(par, r, r_norm, g, g_r)
+      m_b = bounding_ratio(par%critical, psi)
+      call lode_gradient(par%critical, r, r_norm, g, g_r)
       limit = SQRT_2_3*g*m_b
-      d_limit = SQRT_2_3*(g*bounding_slope(par, psi, m_b)*dpsi + m_b*ddot(g_r, dr))
+      d_limit = SQRT_2_3*(g*bounding_slope(par%critical, psi, m_b)*dpsi + m_b*ddot(g_r, dr))
       change = (ddot(r, dr)/r_norm - r_norm/limit*d_limit)/limit
    end function change_of_excess
 
@@ -58,7 +58,7 @@ contains
       real(wp), intent(in) :: psi, r(6), dpsi, dr(6)
       real(wp) :: change(6), beyond
 
-      beyond = excess(par, psi, r)
+      beyond = excess(par%critical, psi, r)
       change = (dr - (change_of_excess(par, psi, r, dpsi, dr)/(1.0_wp + beyond))*r)/(1.0_wp + beyond)
    end function change_of_limited
 end module mud_bounding_changes

@@ -88,12 +88,12 @@ contains
 
       e = min(void_ratio_at(inc, time + h), parts)
       p_c = suction_at(inc, time + h)
-      stiffness = 2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min*h
+      stiffness = 2.0_wp*shear_modulus(par%elastic, e, par%p_min)/par%p_min*h
       r = r0 + deviator(stiffness*inc%d_strain)
       change = dr0 + deviator(stiffness*d_strain) + deviator((stiffness*shear_slope(e)*de)*inc%d_strain)
-      psi = psi_of(par, inc%suction, e, p_c, par%p_min)
+      psi = psi_of(par%critical, inc%suction, e, p_c, par%p_min)
       if (norm(r) <= 0.0_wp) return
-      if (excess(par, psi, r) <= 0.0_wp) return
+      if (excess(par%critical, psi, r) <= 0.0_wp) return
       dpsi = change_of_psi(par, inc%suction, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_turn)
       change = change_of_limited(par, psi, r, dpsi, change)
    end function change_of_slide
@@ -109,8 +109,8 @@ contains
 
       slides = .false.
       if (norm(r) <= 0.0_wp) return
-      psi = psi_of(par, law, e, p_c, par%p_min)
-      if (excess(par, psi, r) < -ON_SURFACE) return
+      psi = psi_of(par%critical, law, e, p_c, par%p_min)
+      if (excess(par%critical, psi, r) < -ON_SURFACE) return
       dpsi = change_of_psi(par, law, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
       slides = change_of_excess(par, psi, r, dpsi, held_rate(par, law, e, p_c, r, follows, .false., d_strain, &
                                                                 d_pc)) > 0.0_wp
@@ -127,9 +127,9 @@ contains
       real(wp), intent(in) :: follows   !< 0 where the gap takes the change of volume, otherwise 1
       real(wp) :: rate(6), psi, dpsi
 
-      rate = deviator((2.0_wp*shear_modulus(par, e, par%p_min)/par%p_min)*d_strain)
+      rate = deviator((2.0_wp*shear_modulus(par%elastic, e, par%p_min)/par%p_min)*d_strain)
       if (.not. sliding) return
-      psi = psi_of(par, law, e, p_c, par%p_min)
+      psi = psi_of(par%critical, law, e, p_c, par%p_min)
       dpsi = change_of_psi(par, law, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
       rate = change_of_limited(par, psi, r, dpsi, rate)
    end function held_rate

@@ -30,18 +30,18 @@ contains
       call stress_ratio(par, y0(1:6), p, r)
       e = void_ratio_at(inc, time)
       e_end = void_ratio_at(inc, time + h)
-      k = bulk_modulus(par, e, p)
-      root = pressure_root(par, e, k)
-      p_end = compressed(par, root, log(e/e_end))
+      k = bulk_modulus(par%elastic, e, p)
+      root = pressure_root(par%elastic, e, k)
+      p_end = compressed(par%elastic, root, log(e/e_end))
       call change_of_place(inc, time, e, shift, driving, de, dp_c)
       call change_of_place(inc, time + h, e_end, shift + dh, driving, de_end, dp_c)
       mean = (y(:, 1) + y(:, 2) + y(:, 3))/3.0_wp
       share = 0.0_wp
       if (p_follows(par, y0(1:6))) share = mean/p
-      call changed_centre_modulus(par, e, k, volume_from_centre(inc, time), g, slopes)
+      call changed_centre_modulus(par%elastic, e, k, volume_from_centre(inc, time), g, slopes)
       dg = 2.0_wp*h*(slopes(1)*share + (slopes(2) - slopes(3)/(1.0_wp + e))*de) + 2.0_wp*g*dh
-      per_e = bulk_modulus(par, e_end, abs(p_end))*e_end/(1.0_wp + e_end)
-      dp = per_e*(share*(root/par%k_0) + de/e - de_end/e_end)
+      per_e = bulk_modulus(par%elastic, e_end, abs(p_end))*e_end/(1.0_wp + e_end)
+      dp = per_e*(share*(root/par%elastic%k_0) + de/e - de_end/e_end)
       d_e = deviator(inc%d_strain)
       do i = 1, 6
          y(:, i) = y(:, i) + d_e(i)*dg + (2.0_wp*g*h)*driving%d_strain%of(:, i)

@@ -90,17 +90,17 @@ contains
          lin%curvature = bonding_curvature(law, w%bond, p_c, e)
          if (moves_with_turn(law%retention_t)) lin%with_turn = bonding_with_turn(law, w%bond, p_c, e)
       end if
-      call state_parameter_slopes(par, w%psi, w%bond%f, e, w%p, lin%psi_f, lin%psi_p)
-      lin%m_b_psi = bounding_slope(par, w%psi, w%m_b)
+      call state_parameter_slopes(par%critical, w%psi, w%bond%f, e, w%p, lin%psi_f, lin%psi_p)
+      lin%m_b_psi = bounding_slope(par%critical, w%psi, w%m_b)
       lin%k_slope = bulk_slope(e)
       lin%g_slope = shear_slope(e)
-      lin%b_slope = kinematic_slope(par, e)
+      lin%b_slope = kinematic_slope(par%hardening, e)
       lin%aside = loading%aside
       lin%g_centre = w%g
       if (loading%aside) then
-         call changed_centre_modulus(par, e, w%k, loading%from_centre, lin%g_centre, lin%g_centre_slopes)
+         call changed_centre_modulus(par%elastic, e, w%k, loading%from_centre, lin%g_centre, lin%g_centre_slopes)
       else if (loading%beside) then
-         lin%g_centre = centre_modulus(par, e, w%k, loading%from_centre)
+         lin%g_centre = centre_modulus(par%elastic, e, w%k, loading%from_centre)
       end if
       lin%per_p = 1.0_wp/w%p
       lin%per_f = 1.0_wp/w%bond%f
@@ -120,8 +120,9 @@ contains
       real(wp), intent(in) :: e
       type(linearised_t), intent(inout) :: lin
 
-      call lode_gradient(par, w%r, w%r_norm, lin%lode_r, lin%lode_r_slope)
-      lin%mechanism = isotropic_slopes(par, w%bond, e, swelling_slope(w%k, e, w%p), SQRT_2_3*lin%lode_r*w%m_b, w%iso)
+      call lode_gradient(par%critical, w%r, w%r_norm, lin%lode_r, lin%lode_r_slope)
+      lin%mechanism = isotropic_slopes(par%critical, w%bond, e, swelling_slope(w%k, e, w%p), &
+                                       SQRT_2_3*lin%lode_r*w%m_b, w%iso)
    end subroutine linearise_mechanism
 
    !> Sets the changes that change_point leaves where only the strain rate and the suction rate change. Units as in

@@ -35,7 +35,7 @@ contains
       p_c = suction_at(inc, time)
       bond = bonding(inc%suction, p_c, e)
       with_turn = bonding_with_turn(inc%suction, bond, p_c, e)
-      change = change - (with_turn(1)/(par%lambda*bond%f))*turn
+      change = change - (with_turn(1)/(par%critical%lambda*bond%f))*turn
    end function changes_of_measure
 
    !> Changes of the rate at which contraction adds to the margin, at a stage with rate w and a margin that changes by
@@ -51,21 +51,21 @@ contains
       real(wp) :: e, curvature(3), on_flow
 
       e = void_ratio_at(inc, time)
-      m = measure(par, w%bond, e, w%p, w%k)
+      m = measure(par%margin, w%bond, e, w%p, w%k)
       dp = (y(:, 1) + y(:, 2) + y(:, 3))/3.0_wp
       if (w%p <= par%p_min) dp = 0.0_wp
       dk = w%k*(BULK_EXPONENT/w%p*dp + bulk_slope(e)*de)
       flow = inc%d_v*dk + w%k*d_v - (rates(:, 1) + rates(:, 2) + rates(:, 3))/3.0_wp   ! of K L D
       on_flow = w%l*w%d
       if (on_flow > 0.0_wp) then
-         change = m%by_p*flow + (change_of_stiffness(par, m, w%p)*w%k*on_flow)*dp
+         change = m%by_p*flow + (change_of_stiffness(par%margin, m, w%p)*w%k*on_flow)*dp
       else
          change = m%by_e*(1.0_wp + e)/w%k*(flow - on_flow*dk) + (m%by_e*on_flow)*de
          if (inc%suction%bonds) then
             curvature = bonding_curvature(inc%suction, w%bond, suction_at(inc, time), e)
             df = w%bond%df_de*de + w%bond%df_dpc*dp_c
             df_e = curvature(3)*de + curvature(2)*dp_c
-            change = change - ((1.0_wp + e)*on_flow/(par%lambda*w%bond%f))*(df_e - (w%bond%df_de/w%bond%f)*df)
+            change = change - ((1.0_wp + e)*on_flow/(par%critical%lambda*w%bond%f))*(df_e - (w%bond%df_de/w%bond%f)*df)
          end if
       end if
       change = shear_share(margin)*(change + (contraction(m, w, e)/DEPTH)*du)

@@ -60,7 +60,7 @@ contains
       if (w%loading .and. .not. stress_only) then
          rates(:, Y_SHEAR) = SQRT_2_3*x%dl
          if (has_numbers(par)) call changes_of_numbers(par, w%l, w%d, w%own, x%dl, x%flow, x%p, y, rates)
-         if (par%fabric > 0.0_wp .and. w%d < 0.0_wp) then
+         if (par%flow%fabric > 0.0_wp .and. w%d < 0.0_wp) then
             call fill_fabric(par, w, y, strain, centre, changes, x, rates(:, Y_Z:Y_Z_END))
          end if
       end if
@@ -128,7 +128,7 @@ contains
       integer :: j
 
       r_b_m = SQRT_2_3*w%lode
-      r_d_psi = r_b_m*dilatancy_slope(par, w%m_d)
+      r_d_psi = r_b_m*dilatancy_slope(par%critical, w%m_d)
       x%n_dr = along_ratio(lin, y, x%p, w%n, lin%on_r(1))
       x%h_dr = along_ratio(lin, y, x%p, lin%h_n, lin%on_r(2))
       x%d_dr = along_ratio(lin, y, x%p, lin%d_n, lin%on_r(3))
@@ -151,8 +151,8 @@ contains
          end if
          if (w%own%bends) then
             ! with M^d/M^b, b_0 and the numbers
-            q = changes_of_bend((dilatancy_slope(par, w%m_d)/w%m_d)*x%psi - x%m_b/w%m_b - KINEMATIC_EXPONENT*x%share &
-                                - lin%b_slope*changes%e, y)
+            q = changes_of_bend((dilatancy_slope(par%critical, w%m_d)/w%m_d)*x%psi - x%m_b/w%m_b &
+                                - KINEMATIC_EXPONENT*x%share - lin%b_slope*changes%e, y)
             x%dd = x%dd + s%d_q*q + s%d_x*x%n_dr
             x%dh = x%dh + s%h_q*q
             if (r_in%kind /= ZERO_TENSORS) x%dd = x%dd - s%d_x*contracted(r_in, w%n)
@@ -275,21 +275,21 @@ contains
       real(wp) :: turning, turned
       integer :: i, j
 
-      turning = par%c_z*w%l*w%d
-      turned = turning*par%z_max
+      turning = par%flow%c_z*w%l*w%d
+      turned = turning*par%flow%z_max
       s%of_whole = 0.0_wp
       s%of_loading = turned*x%turn%of_loading
       s%of_stress = turned*x%turn%of_stress
       do j = 1, LANES
          s%first(j) = turned*x%turn%first(j)
          s%second(j) = turned*x%turn%second(j)
-         s%n(j) = turned*x%turn%n(j) + (par%c_z*par%z_max)*x%flow(j)
+         s%n(j) = turned*x%turn%n(j) + (par%flow%c_z*par%flow%z_max)*x%flow(j)
          s%r(j) = turned*x%turn%r(j)
          s%p(j) = turned*x%turn%p(j)
       end do
       call add_up(w, y, strain, centre, changes, s, rates)
       do i = 1, 6
-         rates(:, i) = rates(:, i) + (par%c_z*w%z(i))*x%flow + turning*y(:, 6 + i)
+         rates(:, i) = rates(:, i) + (par%flow%c_z*w%z(i))*x%flow + turning*y(:, 6 + i)
       end do
    end subroutine fill_fabric
 

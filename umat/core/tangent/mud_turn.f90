@@ -49,7 +49,7 @@ contains
       real(wp) :: h_n(6), d_n(6), g_n(6)
 
       associate (s => turn%slopes)
-         g_n = (3.0_wp*lode_slope(par, w%lode)*SQRT_2_3)*deviator(square(w%n))
+         g_n = (3.0_wp*lode_slope(par%critical, w%lode)*SQRT_2_3)*deviator(square(w%n))
          d_n = s%d_r*w%r
          if (w%own%bends) d_n = d_n + s%d_x*w%r_moved
          d_n = d_n + s%d_z*w%z + (s%d_r_d*w%m_d)*g_n
