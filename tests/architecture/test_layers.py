@@ -148,6 +148,13 @@ def tangents_met(files):
             and stem not in USERS | BLOCKS.get(module, set())]
 
 
+def all_parameters(files):
+    """Laws that take every parameter of a material: each has a type of its own, of which params_t is composed."""
+    return [f"{folder}/{stem}:{number}: {line}" for stem, (folder, text) in files.items()
+            if folder == "umat/core/laws" and stem != "mud_params"
+            for number, line in code_lines(text) if re.search(r"\bparams_t\b", line, re.IGNORECASE)]
+
+
 def seen_by(files, start):
     """Of AS_WRITTEN what a chain of uses from a module leads to."""
     seen, left = set(), [start]
@@ -200,6 +207,11 @@ def planted():
          [("mud_trial", "umat/core/integration", "use mud_turn, only: x"), ("mud_turn", TANGENT, "")],
          [("mud_point", "umat/core", "use mud_turn, only: x"), ("mud_turn", TANGENT, "use mud_held, only: x"),
           ("mud_held", TANGENT, "use mud_trial, only: x"), ("mud_trial", "umat/core/integration", "")]),
+        ("a law that takes all parameters", all_parameters,
+         [("mud_flow", "umat/core/laws", "type(params_t), intent(in) :: par")],
+         [("mud_flow", "umat/core/laws", "type(flow_t) :: par ! params_t"),
+          ("mud_params", "umat/core/laws", "params_t"),
+          ("mud_rates", "umat/core/rates", "type(params_t), intent(in) :: par")]),
         ("a module from nowhere", strange_use, [("node", "host/mesh", "use somewhere, only: x")],
          [("node", "host/mesh", "use, intrinsic :: iso_fortran_env, only: x")])]
     mirror = [] if (misplaced(["tests/unit/test_a.pf"], {"host/mesh"})
@@ -234,6 +246,7 @@ def test_folders_use_what_their_layer_may():
         ("every module uses only what its layer may see", wrong_layers(files)),
         ("no folders use each other in a circle", cycles(files)),
         ("the value path meets no tangent", tangents_met(files)),
+        ("laws take their own parameters, not all of a material", all_parameters(files)),
         ("no module hands on a name of another", handed_on(files)),
         ("HDF5, LAPACK and UMFPACK live in one file each", foreign(files)),
         ("every module that is used is there", strange_use(files)),

@@ -167,7 +167,7 @@ MUTATIONS = [
     ("fluidity softens dilatancy alone", (OPTIONS, "b_0 = own%fluidity%factor*b_0", "b_0 = b_0 + 0.0_wp*own%fluidity%factor")),
     ("the tangent does not know how fluidity changes", (FLUIDITY, "fluidity%by_ell = -fluidity%factor*fluidity%weight", "fluidity%by_ell = 0.0_wp")),
     ("the tangent does not know the threshold of fluidity", (FLUIDITY, "fluidity%weight_by_p = -2.0_wp*below/par%p_ell", "fluidity%weight_by_p = 0.0_wp")),
-    ("fluidity stays where it was", (OPTIONS, "min(max(y(Y_FLUIDITY), 0.0_wp), par%ell_max)", "min(max(y0(Y_FLUIDITY), 0.0_wp), par%ell_max)")),
+    ("fluidity stays where it was", (OPTIONS, "min(max(y(Y_FLUIDITY), 0.0_wp), par%fluidity%ell_max)", "min(max(y0(Y_FLUIDITY), 0.0_wp), par%fluidity%ell_max)")),
     ("threshold weight on the wrong memory", (REVERSAL, "*(memory%r_before - r)", "*(memory%r_in - r)")),
     ("no fall-back of the threshold rule", (REVERSAL, "if (ddot(r - r_in, n) < 0.0_wp) r_in = r", "continue")),
     ("repositioning with the process that ends",

@@ -23,8 +23,8 @@ module mud_params
       LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
    implicit none (type, external)
    private
-   public :: params_t, read_params, completed, is_length, options_t, options_of, check_bounds, default_props, &
-             NO_FLOOR, STRICTNESS
+   public :: params_t, preloading_law_t, fluidity_law_t, read_params, completed, is_length, options_t, options_of, &
+             check_bounds, default_props, NO_FLOOR, STRICTNESS
 
    real(wp), parameter :: NO_FLOOR = 1.0e-15_wp   !< The only floor of (r - r_in):n with the guard off [-].
 
@@ -46,6 +46,16 @@ module mud_params
       logical :: preloading   !< Cyclic preloading.
       logical :: fluid        !< Fluidity.
    end type options_t
+
+   !> Parameters of cyclic preloading, as in mud_registry. Options stand above the laws: their types are here.
+   type :: preloading_law_t
+      real(wp) :: c_chi, zeta_chi, s_chi
+   end type preloading_law_t
+
+   !> Parameters of fluidity, as in mud_registry.
+   type :: fluidity_law_t
+      real(wp) :: c_ell, ell_max, p_ell, r_ell
+   end type fluidity_law_t
 
    !> Parameters of one material; names and units as in mud_registry.
    type, extends(options_t) :: params_t
@@ -75,8 +85,8 @@ module mud_params
       !> have, and the rates change by their own size within the same strain; docs/theory/integration.md section 2 [-].
       real(wp) :: second_share
       real(wp) :: rho_e     !< Radius of the elastic domain, 0: none [-].
-      real(wp) :: c_chi, zeta_chi, s_chi     !< Read with preloading.
-      real(wp) :: c_ell, ell_max, p_ell, r_ell   !< Read with fluidity.
+      type(preloading_law_t) :: preload   !< Read with preloading.
+      type(fluidity_law_t) :: fluidity    !< Read with fluidity.
       real(wp) :: largest_stress, largest_suction_step   !< Limits of input in the unit of p_atm.
    end type params_t
 contains
@@ -143,24 +153,14 @@ contains
       call check_props(props, status)
       if (status%code /= 0) return
 
-      params%elastic%k_0 = props(P_K_0)
-      params%elastic%g_0 = props(P_G_0)
       params%critical%n_c = props(P_N_C)
       params%critical%lambda = props(P_LAMBDA)
       params%critical%alpha_csl = props(P_ALPHA_CSL)
       params%critical%n_l = props(P_N_L)
-      params%hardening%theta = props(P_THETA)
       params%critical%m_c = props(P_M_C)
       params%critical%c = props(P_C)
       params%critical%n_b = props(P_N_B)
       params%critical%n_d = props(P_N_D)
-      params%flow%a_0 = props(P_A_0)
-      params%hardening%stiffness = props(P_H_0)*props(P_G_0)
-      params%hardening%p_atm = props(P_P_ATM)
-      params%margin = margin_t(props(P_LAMBDA), props(P_P_ATM))
-      params%hardening%c_h = props(P_C_H)
-      params%flow%c_z = props(P_C_Z)
-      params%flow%z_max = props(P_Z_MAX)
       params%suction%b_1 = props(P_B_1)
       params%suction%b_2 = props(P_B_2)
       params%suction%s_max = props(P_S_MAX)
@@ -172,13 +172,16 @@ contains
       params%e_0 = props(P_E_0)
       params%p_atm = props(P_P_ATM)
       params%suction%p_atm = params%p_atm
-      params%elastic%p_atm = params%p_atm
       params%p_min = minimum_stress(props)
-      params%elastic%p_min = params%p_min
+      params%elastic = elastic_t(k_0=props(P_K_0), g_0=props(P_G_0), p_atm=props(P_P_ATM), p_min=params%p_min)
+      params%flow = flow_t(a_0=props(P_A_0), c_z=props(P_C_Z), z_max=props(P_Z_MAX), &
+                           fabric=real(whole(props(P_FABRIC)), wp))
+      params%hardening = hardening_t(stiffness=props(P_H_0)*props(P_G_0), c_h=props(P_C_H), theta=props(P_THETA), &
+                                     p_atm=props(P_P_ATM))
+      params%margin = margin_t(lambda=props(P_LAMBDA), p_atm=props(P_P_ATM))
       params%largest_stress = LARGEST_STRESS*stress_unit(props)
       params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
       params%suction%bonds = whole(props(P_BONDING)) == 1
-      params%flow%fabric = real(whole(props(P_FABRIC)), wp)
       params%isotropic = whole(props(P_ISOTROPIC)) /= ISOTROPIC_NONE
       params%remembers = whole(props(P_ISOTROPIC)) == ISOTROPIC_REMEMBERS
       if (whole(props(P_LODE)) == 0) params%critical%c = 1.0_wp
@@ -199,18 +202,11 @@ contains
       params%suction%scanning%moves = .false.
       if (params%hysteresis) call read_wetting(props, params%suction%retention_t)
       params%preloading = props(P_C_CHI) > 0.0_wp
-      if (params%preloading) then
-         params%c_chi = props(P_C_CHI)
-         params%zeta_chi = props(P_ZETA_CHI)
-         params%s_chi = props(P_S_CHI)
-      end if
+      if (params%preloading) &
+         params%preload = preloading_law_t(c_chi=props(P_C_CHI), zeta_chi=props(P_ZETA_CHI), s_chi=props(P_S_CHI))
       params%fluid = props(P_C_ELL) > 0.0_wp
-      if (params%fluid) then
-         params%c_ell = props(P_C_ELL)
-         params%ell_max = props(P_ELL_MAX)
-         params%p_ell = threshold_of_fluidity(props)
-         params%r_ell = props(P_R_ELL)
-      end if
+      if (params%fluid) params%fluidity = fluidity_law_t(c_ell=props(P_C_ELL), ell_max=props(P_ELL_MAX), &
+                                                         p_ell=threshold_of_fluidity(props), r_ell=props(P_R_ELL))
       params%critical%c4 = params%critical%c**4
       params%critical%lode_bend = SQRT_6*(1.0_wp - params%critical%c4)/(8.0_wp*params%critical%c4)
 

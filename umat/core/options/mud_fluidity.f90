@@ -6,7 +6,7 @@
 !> stay what they are and strains grow.
 module mud_fluidity
    use mud_kinds, only: wp
-   use mud_params, only: params_t
+   use mud_params, only: fluidity_law_t
    use mud_tensor, only: LANES
    use mud_vector, only: NY, Y_OPTIONS
    implicit none (type, external)
@@ -28,7 +28,7 @@ contains
    !> Fluidity, its weight and factors with their slopes, of ell >= 0 [-] at p' > 0 [kPa], not checked.
    !> docs/theory/material.md section 4.11.
    pure function fluidity_at(par, ell, p) result(fluidity)
-      type(params_t), intent(in) :: par
+      type(fluidity_law_t), intent(in) :: par
       real(wp), intent(in) :: ell, p
       type(fluidity_t) :: fluidity
       real(wp) :: below
@@ -44,7 +44,7 @@ contains
 
    !> Growth of the fluidity per unit of L [-]. docs/theory/material.md section 4.11.
    pure real(wp) function growth(par, fluidity)
-      type(params_t), intent(in) :: par
+      type(fluidity_law_t), intent(in) :: par
       type(fluidity_t), intent(in) :: fluidity
 
       growth = par%c_ell*fluidity%weight*(1.0_wp - fluidity%ell/par%ell_max)
@@ -52,7 +52,7 @@ contains
 
    !> Changes of the rate of growth L times growth, with L, p' [kPa] and the integrated vector.
    pure function growth_changes(par, fluidity, l, dl, dp, y) result(changes)
-      type(params_t), intent(in) :: par
+      type(fluidity_law_t), intent(in) :: par
       type(fluidity_t), intent(in) :: fluidity
       real(wp), intent(in) :: l, dl(LANES), dp(LANES), y(LANES, NY)
       real(wp) :: changes(LANES), slopes(2)
@@ -64,7 +64,7 @@ contains
    !> Share of the fluidity that a volumetric strain rate takes away, per unit of time; 0 where the volume grows [-].
    !> docs/theory/material.md section 4.11.
    pure real(wp) function recovery(par, d_v)
-      type(params_t), intent(in) :: par
+      type(fluidity_law_t), intent(in) :: par
       real(wp), intent(in) :: d_v
 
       recovery = par%r_ell*max(d_v, 0.0_wp)
@@ -73,7 +73,7 @@ contains
    !> Changes of the rate at which a volumetric strain rate d_v takes fluidity away, of ell, with the integrated vector
    !> and d_v.
    pure function recovery_changes(par, d_v, ell, y, dv) result(changes)
-      type(params_t), intent(in) :: par
+      type(fluidity_law_t), intent(in) :: par
       real(wp), intent(in) :: d_v, ell, y(LANES, NY), dv(LANES)
       real(wp) :: changes(LANES)
 
@@ -83,7 +83,7 @@ contains
 
    !> Fluidity that is left after a share h of a volumetric strain d_v without shear [-].
    pure real(wp) function recovered(par, d_v, h, ell)
-      type(params_t), intent(in) :: par
+      type(fluidity_law_t), intent(in) :: par
       real(wp), intent(in) :: d_v, h, ell
 
       recovered = ell*exp(-h*recovery(par, d_v))
@@ -91,7 +91,7 @@ contains
 
    !> Changes of that with the integrated vector, with h and d_v [-].
    pure function recovered_changes(par, d_v, h, ell, y, dh, dv) result(changes)
-      type(params_t), intent(in) :: par
+      type(fluidity_law_t), intent(in) :: par
       real(wp), intent(in) :: d_v, h, ell, y(LANES, NY), dh(LANES), dv(LANES)
       real(wp) :: changes(LANES)
 

@@ -169,7 +169,7 @@ contains
       type(state_t), intent(inout) :: state
 
       ! a scheme's weights may leave rounding of either sign
-      if (par%fluid) state%fluidity = min(max(y(Y_FLUIDITY), 0.0_wp), par%ell_max)
+      if (par%fluid) state%fluidity = min(max(y(Y_FLUIDITY), 0.0_wp), par%fluidity%ell_max)
       if (par%preloading) call note_contraction(y(Y_LOG_CHI) - y0(Y_LOG_CHI), y(Y_CONTRACTION), state%memory)
    end subroutine keep_numbers
 
@@ -196,7 +196,7 @@ contains
       if (par%preloading) own%bends = y(Y_LOG_CHI) > NO_CONTRACTION
       if (own%bends) own%chi = exp(y(Y_LOG_CHI))
       if (.not. par%fluid) return
-      own%fluidity = fluidity_at(par, y(Y_FLUIDITY), p)
+      own%fluidity = fluidity_at(par%fluidity, y(Y_FLUIDITY), p)
       a_0 = own%fluidity%factor*a_0
       b_0 = own%fluidity%factor*b_0
    end subroutine look_at_numbers
@@ -208,7 +208,7 @@ contains
       real(wp), intent(in) :: ratio, a_0, b_0
       type(bend_t) :: with_x
 
-      with_x%preloading = preloading_of(par, own%chi, ratio, a_0, b_0)
+      with_x%preloading = preloading_of(par%preload, own%chi, ratio, a_0, b_0)
    end function bend_of
 
    !> Bends D and 1/h at (r - r_in):n = x; the factor on D where it contracts, and its slope d ln/d ln q, q as x**2 [-].
@@ -226,7 +226,7 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: slope
 
-      bend_of_hardening = par%s_chi*slope
+      bend_of_hardening = par%preload%s_chi*slope
    end function bend_of_hardening
 
    !> Changes of ln q at constant x with those of ln(M^d/(M^b b_0)) and the vector [-].
@@ -261,10 +261,10 @@ contains
       real(wp), intent(out) :: rates(Y_OPTIONS:NY)
 
       rates = 0.0_wp
-      if (par%fluid) rates(Y_FLUIDITY) = l*growth(par, own%fluidity)
+      if (par%fluid) rates(Y_FLUIDITY) = l*growth(par%fluidity, own%fluidity)
       if (.not. par%preloading) return
       if (d < 0.0_wp) then
-         rates(Y_LOG_CHI) = par%zeta_chi*l*d
+         rates(Y_LOG_CHI) = par%preload%zeta_chi*l*d
       else
          rates(Y_CONTRACTION) = l*d
       end if
@@ -280,12 +280,12 @@ contains
 
       if (par%preloading) then
          if (d < 0.0_wp) then
-            rates(:, Y_LOG_CHI) = par%zeta_chi*flow
+            rates(:, Y_LOG_CHI) = par%preload%zeta_chi*flow
          else
             rates(:, Y_CONTRACTION) = flow
          end if
       end if
-      if (par%fluid) rates(:, Y_FLUIDITY) = growth_changes(par, own%fluidity, l, dl, dp, y)
+      if (par%fluid) rates(:, Y_FLUIDITY) = growth_changes(par%fluidity, own%fluidity, l, dl, dp, y)
    end subroutine changes_of_numbers
 
    !> Changes of L D times a number, from those of the rates, where contraction or dilation is a rate of an option.
@@ -303,7 +303,7 @@ contains
       real(wp), intent(in) :: d_v, y(NY)
       real(wp), intent(inout) :: rates(Y_OPTIONS:NY)
 
-      if (par%fluid) rates(Y_FLUIDITY) = rates(Y_FLUIDITY) - recovery(par, d_v)*y(Y_FLUIDITY)
+      if (par%fluid) rates(Y_FLUIDITY) = rates(Y_FLUIDITY) - recovery(par%fluidity, d_v)*y(Y_FLUIDITY)
    end subroutine add_volume_rates
 
    !> Adds the changes of these rates at a point of the vector; d_v changes by dv [-].
@@ -313,7 +313,7 @@ contains
       real(wp), intent(inout) :: rates(LANES, NY)
 
       if (par%fluid) &
-         rates(:, Y_FLUIDITY) = rates(:, Y_FLUIDITY) - recovery_changes(par, d_v, point(Y_FLUIDITY), y, dv)
+         rates(:, Y_FLUIDITY) = rates(:, Y_FLUIDITY) - recovery_changes(par%fluidity, d_v, point(Y_FLUIDITY), y, dv)
    end subroutine add_volume_changes
 
    !> Moves the numbers over a share h of a change of volume d_v without shear [-]. docs/theory/memory-rules.md
@@ -323,7 +323,7 @@ contains
       real(wp), intent(in) :: d_v, h
       real(wp), intent(inout) :: y(NY)
 
-      if (par%fluid) y(Y_FLUIDITY) = recovered(par, d_v, h, y(Y_FLUIDITY))
+      if (par%fluid) y(Y_FLUIDITY) = recovered(par%fluidity, d_v, h, y(Y_FLUIDITY))
    end subroutine move_numbers
 
    !> Changes over that way, which begins at y0; h changes by dh, d_v by dv [-].
@@ -332,6 +332,6 @@ contains
       real(wp), intent(in) :: d_v, h, y0(NY), dh(LANES), dv(LANES)
       real(wp), intent(inout) :: y(LANES, NY)
 
-      if (par%fluid) y(:, Y_FLUIDITY) = recovered_changes(par, d_v, h, y0(Y_FLUIDITY), y, dh, dv)
+      if (par%fluid) y(:, Y_FLUIDITY) = recovered_changes(par%fluidity, d_v, h, y0(Y_FLUIDITY), y, dh, dv)
    end subroutine changes_of_moved
 end module mud_options

@@ -7,7 +7,7 @@
 module mud_preloading
    use mud_branchless, only: positive
    use mud_kinds, only: wp
-   use mud_params, only: params_t
+   use mud_params, only: preloading_law_t
    use mud_state, only: memory_t
    use mud_tensor, only: LANES
    use mud_vector, only: NY, Y_OPTIONS
@@ -33,7 +33,7 @@ contains
    !> Cyclic preloading by the contraction chi of other processes, with ratio = M^d/M^b, A_0 and b_0 = h x > 0. All [-];
    !> nothing is checked. docs/theory/material.md section 4.9.
    pure function preloading_of(par, chi, ratio, a_0, b_0) result(preloading)
-      type(params_t), intent(in) :: par
+      type(preloading_law_t), intent(in) :: par
       real(wp), intent(in) :: chi, ratio, a_0, b_0
       type(preloading_t) :: preloading
 
