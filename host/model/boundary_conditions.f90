@@ -32,7 +32,7 @@ contains
                 constraint%rain_0(dofs%n), constraint%rain_1(dofs%n), constraint%offset(dofs%n), &
                 constraint%mass(dofs%n), source=0.0_wp)
       allocate (constraint%air_target(nodes), source=0.0_wp)
-      allocate (constraint%added(0))
+      allocate (constraint%linear(0), constraint%added(0))
       do i = 1, size(model%plates)
          ! Plates whose boundaries a &tie joins have one unknown.
          associate (of => model%plates(i)%coordinates, at => unknowns_of(model%plates(i), dofs))

@@ -83,12 +83,10 @@ contains
                call book_seepage(domain, e, scheme, old, new, ledger)
          end associate
       end do
-      if (allocated(constraint%linear)) then
-         work%damping = work%damping + work_of_linear_forces(constraint%linear, .true., dofs, old, new, change)
-         work%skeleton = work%skeleton + work_of_linear_forces(constraint%linear, .false., dofs, old, new, change)
-         ledger%supports = ledger%supports + work_of_linear_forces(constraint%linear, .true., dofs, old, new, held) &
-                           + work_of_linear_forces(constraint%linear, .false., dofs, old, new, held)
-      end if
+      work%damping = work%damping + work_of_linear_forces(constraint%linear, .true., dofs, old, new, change)
+      work%skeleton = work%skeleton + work_of_linear_forces(constraint%linear, .false., dofs, old, new, change)
+      ledger%supports = ledger%supports + work_of_linear_forces(constraint%linear, .true., dofs, old, new, held) &
+                        + work_of_linear_forces(constraint%linear, .false., dofs, old, new, held)
       ledger%skeleton = ledger%skeleton + work%skeleton
       ledger%pores = ledger%pores + work%pores
       ledger%gravity = ledger%gravity + work%gravity

@@ -163,7 +163,7 @@ contains
       end do
       mean = old%outflow + scheme%gamma_1*(new%outflow - old%outflow)
       water%left = water%left + scheme%dt*(mean(1) - mean(2))
-      if (allocated(constraint%linear)) water%received = water%received &
+      water%received = water%received &
          - water_through_dashpots(constraint%linear, dofs, constraint%air, new%x - old%x)
    contains
       !> Mean over the step [m3/s].

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Forces in proportion to velocities, as of dashpots, or to displacements, as of springs, and outflow in proportion to
-!> rates of pressures. Terms fill them; without them nothing is allocated and nothing is done.
+!> rates of pressures. Terms fill them; without them the list is empty.
 !> docs/theory/host.md section 7.4.
 module linear_forces
    use kinds, only: wp

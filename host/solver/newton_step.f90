@@ -532,27 +532,6 @@ contains
       type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
       type(assembly_t), intent(inout) :: assembly
-      integer :: i
-
-      call add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-      do i = 1, size(constraint%added)
-         associate (one => constraint%added(i)%it)
-            if (one%acts) call one%add(dofs, pattern, scheme, old, new, slopes, assembly)
-         end associate
-      end do
-      if (allocated(constraint%linear)) call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, &
-                                                               slopes, assembly)
-   end subroutine add_forces
-
-   !> Inertia of rigid bodies.
-   subroutine add_bodies(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      type(model_state_t), intent(in) :: old, new
-      logical, intent(in) :: slopes
-      type(assembly_t), intent(inout) :: assembly
       integer :: i, f, k, place
       real(wp) :: force
 
@@ -566,7 +545,13 @@ contains
          place = place_of(pattern, i, i)
          if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
       end do
-   end subroutine add_bodies
+      do i = 1, size(constraint%added)
+         associate (one => constraint%added(i)%it)
+            if (one%acts) call one%add(dofs, pattern, scheme, old, new, slopes, assembly)
+         end associate
+      end do
+      call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, slopes, assembly)
+   end subroutine add_forces
 
    pure subroutine add_correction(dofs, dx, x, share, largest)
       type(dofs_t), intent(in) :: dofs

@@ -128,7 +128,6 @@ contains
       type(linear_forces_t) :: dashpots
       integer :: i
 
-      if (.not. allocated(solution%constraint%linear)) allocate (solution%constraint%linear(0))
       do i = 1, size(self%sides)
          if (fault%code /= 0) return
          call prepare_side(model, self%sides(i), solution%state, dashpots, fault)
@@ -226,6 +225,11 @@ contains
       associate (m => model%domain, region => model%domain%regions(model%domain%region_of(e)))
          first = (e - 1)*m%rule + 1
          last = e*m%rule
+         modulus = 0.0_wp
+         shear = 0.0_wp
+         s = 0.0_wp
+         slope = 0.0_wp
+         rho = 0.0_wp
          strain = 0.0_wp
          do g = 1, m%rule
             pressures = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
@@ -238,19 +242,12 @@ contains
          if (report%code /= 0) then
             call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary '// &
                        'refuses the initial state.')
-            modulus = 0.0_wp
-            shear = 0.0_wp
-            s = 1.0_wp
-            slope = 0.0_wp
-            rho = 0.0_wp
             return
          end if
          modulus = sum(response%dsig_deps(1, 1, :m%rule) + response%dsig_deps(2, 2, :m%rule))/(2*m%rule)
          shear = sum(response%dsig_deps(4, 4, :m%rule))/m%rule
          s = sum(state%s(first:last))/m%rule
-         slope = 0.0_wp
          if (region%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
-         rho = 0.0_wp
          do p = first, last
             n = state%e(p)/(1 + state%e(p))
             rho = rho + mixture_density(m, region, n, state%s(p))/m%rule

@@ -239,3 +239,12 @@ def test_a_viscous_sample_creeps_as_kelvin_and_voigts_element():
     told = [start("creep_told", text, "--check").stderr for text in texts]
     check("a viscosity that no stage can feel is told", "viscosity" in told[1] and "static" in told[1]
           and "viscosity" not in told[0], told)
+
+    # `without = 'damping'` takes it out where it is the only damping: the bytes of a scene that has none.
+    texts = [CREEP.format(viscosity=v, kind="quasi_static", dt=0.1).replace("fields = 'u'", f"fields = 'u' {word}")
+             for v, word in (("", ""), (f"viscosity = {eta}", "without = 'damping'"))]
+    (plain, _), (viscous, _) = (run(text, "creep_without") for text in texts)
+    check("without damping there is no viscous stress", (plain["top.u_z"] == viscous["top.u_z"]).all(),
+          viscous["top.u_z"])
+    said = start("creep_told", texts[1], "--check").stderr
+    check("and the scene is not told that it has none", "no effect" not in said, said)

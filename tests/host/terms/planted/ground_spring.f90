@@ -90,7 +90,6 @@ contains
       integer :: i
 
       allocate (at(0))
-      if (.not. allocated(solution%constraint%linear)) allocate (solution%constraint%linear(0))
       do i = 1, size(self%springs)
          associate (nodes => model%domain%mesh%groups(self%springs(i)%group)%nodes)
             at = pack(model%dofs%of(:DISPLACEMENTS, nodes), model%dofs%of(:DISPLACEMENTS, nodes) > 0)
