@@ -25,8 +25,7 @@ module archive
       !> A list that need not be allocated, with its extent.
       generic :: exchange_allocatable => exchange_real_list, exchange_real_table, exchange_whole_list
       procedure :: enter, leave, refuse
-      procedure(move_list_i), deferred :: move_list
-      procedure(move_table_i), deferred :: move_table
+      procedure(move_values_i), deferred :: move_values
       procedure(move_text_i), deferred :: move_text
       procedure(find_extents_i), deferred :: find_extents
       procedure, private :: exchange_real, exchange_reals, exchange_table, exchange_whole, exchange_long, &
@@ -35,21 +34,13 @@ module archive
    end type archive_t
 
    abstract interface
-      !> Writes a list, or restores it where the archive has one of its extent; else the archive is damaged.
-      subroutine move_list_i(self, name, values, unit, meaning)
+      !> Writes a list or table, or restores it where the archive has one of its extent; else the archive is damaged.
+      subroutine move_values_i(self, name, values, unit, meaning)
          import :: archive_t, wp
          class(archive_t), intent(inout) :: self
          character(*), intent(in) :: name, unit, meaning
-         real(wp), intent(inout), contiguous :: values(:)
-      end subroutine move_list_i
-
-      !> Writes a table, or restores it, as move_list does.
-      subroutine move_table_i(self, name, values, unit, meaning)
-         import :: archive_t, wp
-         class(archive_t), intent(inout) :: self
-         character(*), intent(in) :: name, unit, meaning
-         real(wp), intent(inout), contiguous :: values(:, :)
-      end subroutine move_table_i
+         real(wp), intent(inout), contiguous :: values(..)
+      end subroutine move_values_i
 
       !> Writes a text, or restores it; one that the archive does not have is blank.
       subroutine move_text_i(self, name, text)
@@ -96,7 +87,7 @@ contains
       character(*), intent(in) :: name, unit, meaning
       real(wp), intent(inout), contiguous :: values(:)
 
-      call self%move_list(self%within//name, values, unit, meaning)
+      call self%move_values(self%within//name, values, unit, meaning)
    end subroutine exchange_reals
 
    subroutine exchange_table(self, name, values, unit, meaning)
@@ -104,7 +95,7 @@ contains
       character(*), intent(in) :: name, unit, meaning
       real(wp), intent(inout), contiguous :: values(:, :)
 
-      call self%move_table(self%within//name, values, unit, meaning)
+      call self%move_values(self%within//name, values, unit, meaning)
    end subroutine exchange_table
 
    subroutine exchange_real(self, name, value, unit, meaning)

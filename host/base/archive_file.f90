@@ -23,7 +23,7 @@ module archive_file
       private
       type(h5_t) :: file
    contains
-      procedure :: move_list, move_table, move_text, find_extents
+      procedure :: move_values, move_text, find_extents
    end type archive_file_t
 contains
    !> Begins an archive that is written; its file gets its name when it is closed.
@@ -82,10 +82,10 @@ contains
       end if
    end subroutine close_archive
 
-   subroutine move_list(self, name, values, unit, meaning)
+   subroutine move_values(self, name, values, unit, meaning)
       class(archive_file_t), intent(inout) :: self
       character(*), intent(in) :: name, unit, meaning
-      real(wp), intent(inout), contiguous :: values(:)
+      real(wp), intent(inout), contiguous :: values(..)
 
       if (self%reading) then
          call get(self%file, name, values)
@@ -93,20 +93,7 @@ contains
          call put(self%file, name, values, unit, meaning)
       end if
       self%good = self%good .and. self%file%good
-   end subroutine move_list
-
-   subroutine move_table(self, name, values, unit, meaning)
-      class(archive_file_t), intent(inout) :: self
-      character(*), intent(in) :: name, unit, meaning
-      real(wp), intent(inout), contiguous :: values(:, :)
-
-      if (self%reading) then
-         call get(self%file, name, values)
-      else
-         call put(self%file, name, values, unit, meaning)
-      end if
-      self%good = self%good .and. self%file%good
-   end subroutine move_table
+   end subroutine move_values
 
    subroutine move_text(self, name, text)
       class(archive_file_t), intent(inout) :: self

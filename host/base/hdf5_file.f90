@@ -32,14 +32,8 @@ module hdf5_file
    !> An array of any size, with one or two dimensions, as a dataset; its folders are made. An empty one is left out.
    !> file%good is false after a failure. `unit` is that of the values.
    interface put
-      module procedure put_real, put_real_2, put_integer, put_integer_2
+      module procedure put_real, put_integer
    end interface put
-
-   !> A dataset into an array, which must have its extent, else file%good is false and the values stay. An empty array
-   !> is not read.
-   interface get
-      module procedure get_real, get_real_2, get_integer
-   end interface get
 contains
    !> An empty file, in memory until write_file. `guarded`: in the format of HDF5 1.10, which has checksums over its
    !> structure too, the place of every dataset included; what reads it must not be older.
@@ -125,34 +119,18 @@ contains
    subroutine put_real(file, name, values, unit, meaning)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, unit, meaning
-      real(wp), intent(in), contiguous, target :: values(:)
+      real(wp), intent(in), contiguous, target :: values(..)
 
       if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values), unit, meaning)
    end subroutine put_real
 
-   subroutine put_real_2(file, name, values, unit, meaning)
-      type(h5_t), intent(inout) :: file
-      character(*), intent(in) :: name, unit, meaning
-      real(wp), intent(in), contiguous, target :: values(:, :)
-
-      if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values), unit, meaning)
-   end subroutine put_real_2
-
    subroutine put_integer(file, name, values, unit, meaning)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, unit, meaning
-      integer, intent(in), contiguous, target :: values(:)
+      integer, intent(in), contiguous, target :: values(..)
 
       if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_INTEGER, shape(values), c_loc(values), unit, meaning)
    end subroutine put_integer
-
-   subroutine put_integer_2(file, name, values, unit, meaning)
-      type(h5_t), intent(inout) :: file
-      character(*), intent(in) :: name, unit, meaning
-      integer, intent(in), contiguous, target :: values(:, :)
-
-      if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_INTEGER, shape(values), c_loc(values), unit, meaning)
-   end subroutine put_integer_2
 
    !> One chunk with a checksum; no time stamps, so that equal results are equal files.
    subroutine put_raw(file, name, kind, extent, values, unit, meaning)
@@ -277,34 +255,19 @@ contains
       call h5sclose_f(space, status)
    end subroutine extent_of_set
 
-   subroutine get_real(file, name, values)
+   !> A dataset, of real numbers or integers, into an array, which must have its extent, else file%good is false and the
+   !> values stay. An empty array is not read.
+   subroutine get(file, name, values)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name
-      real(wp), intent(inout), contiguous, target :: values(:)
+      real(wp), intent(inout), contiguous, target :: values(..)
 
-      if (size(values) > 0) call get_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values))
-   end subroutine get_real
+      if (size(values) > 0) call get_raw(file, name, shape(values), c_loc(values))
+   end subroutine get
 
-   subroutine get_real_2(file, name, values)
+   subroutine get_raw(file, name, extent, values)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name
-      real(wp), intent(inout), contiguous, target :: values(:, :)
-
-      if (size(values) > 0) call get_raw(file, name, H5T_NATIVE_DOUBLE, shape(values), c_loc(values))
-   end subroutine get_real_2
-
-   subroutine get_integer(file, name, values)
-      type(h5_t), intent(inout) :: file
-      character(*), intent(in) :: name
-      integer, intent(inout), contiguous, target :: values(:)
-
-      if (size(values) > 0) call get_raw(file, name, H5T_NATIVE_INTEGER, shape(values), c_loc(values))
-   end subroutine get_integer
-
-   subroutine get_raw(file, name, kind, extent, values)
-      type(h5_t), intent(inout) :: file
-      character(*), intent(in) :: name
-      integer(hid_t), intent(in) :: kind
       integer, intent(in) :: extent(:)
       type(c_ptr), intent(in) :: values
       integer(hid_t) :: set
@@ -322,7 +285,7 @@ contains
          file%good = .false.
       else
          place = values
-         call h5dread_f(set, kind, place, status)
+         call h5dread_f(set, H5T_NATIVE_DOUBLE, place, status)
          call note(file, status)
       end if
       call h5dclose_f(set, status)

@@ -3,11 +3,10 @@
 module name_search
    use faults, only: fault_t, raise
    use exit_codes, only: EXIT_GROUP
-   use scene_parts, only: scene_item_t, place_of
    use triangle_mesh, only: mesh_t, find_group
    implicit none (type, external)
    private
-   public :: mesh_group, defined_name, check_stages
+   public :: mesh_group, defined_name
 contains
    !> Place of a group of the mesh that is to be used; a fault names those that there are. Fault EXIT_GROUP: there is
    !> none, one without entities, or two of them; 0 then.
@@ -46,20 +45,6 @@ contains
                     listed(names)//'.')
       end if
    end function defined_name
-
-   !> Names of stages. Fault EXIT_GROUP: one that nobody defines.
-   subroutine check_stages(stages, item, names, fault)
-      character(*), intent(in) :: stages(:)      !< Of the scene.
-      class(scene_item_t), intent(in) :: item    !< It names them.
-      character(*), intent(in) :: names(:)
-      type(fault_t), intent(inout) :: fault
-      integer :: k
-
-      do k = 1, size(names)
-         if (any(stages == names(k)) .or. fault%code /= 0) cycle
-         call raise(fault, EXIT_GROUP, place_of(item)//'there is no stage '''//trim(names(k))//'''.')
-      end do
-   end subroutine check_stages
 
    pure function listed(names) result(list)
       character(*), intent(in) :: names(:)

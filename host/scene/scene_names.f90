@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Names of a scene: a name that other groups refer to is unique, and a name that becomes a file or a column is valid
-!> for that.
+!> Names of a scene: a name that other groups refer to is unique, a name that becomes a file or a column is valid for
+!> that, and the stages that groups name are there.
 module scene_names
    use scene_parts, only: NAME_LENGTH
+   use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use material_registry, only: is_law
-   use namelists, only: group_t, find_entry
+   use namelists, only: group_t, entry_t, find_entry
    use texts, only: whole
    implicit none (type, external)
    private
@@ -20,7 +21,7 @@ module scene_names
    character(*), parameter :: FIT = LETTERS//'0123456789_-.'
 contains
    !> Of groups whose keys are those of the list. Fault EXIT_INPUT: a name is empty, too long, given twice, or holds
-   !> what no file name should.
+   !> what no file name should. Fault EXIT_GROUP: a stage that nobody defines.
    subroutine check_names(groups, fault)
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(fault_t), intent(inout) :: fault
@@ -49,7 +50,27 @@ contains
          end do
          if (fault%code /= 0) return
       end do
+      do g = 1, size(groups)
+         i = find_entry(groups(g), 'stages')
+         if (i > 0) call check_stages(groups, groups(g)%file, groups(g)%entries(i), fault)
+      end do
    end subroutine check_names
+
+   subroutine check_stages(groups, file, item, fault)
+      type(group_t), intent(in) :: groups(:)
+      character(*), intent(in) :: file
+      type(entry_t), intent(in) :: item
+      type(fault_t), intent(inout) :: fault
+      integer :: g, k
+
+      each: do k = 1, item%count
+         do g = 1, size(groups)
+            if (groups(g)%name /= 'stage') cycle
+            if (groups(g)%entries(find_entry(groups(g), 'name'))%values(1) == item%values(k)) cycle each
+         end do
+         call raise(fault, EXIT_GROUP, at_line(file, item%line)//'there is no stage '''//trim(item%values(k))//'''.')
+      end do each
+   end subroutine check_stages
 
    !> Number of the list that a group's name belongs to, 0 if it has none.
    integer function list_of(group) result(number)

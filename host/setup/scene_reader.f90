@@ -9,7 +9,6 @@ module scene_reader
    use scene_keys, only: check_keys, make_lists, take_group
    use effect_switches, only: remove_effects
    use kinds, only: wp
-   use name_search, only: check_stages
    use scene_names, only: check_names
    use scene_refinement, only: refine_mesh
    use scene_settings, only: apply_settings
@@ -55,7 +54,6 @@ contains
          table%group = groups(i)
          call take_group(table, scene, fault)
       end do
-      if (fault%code == 0) call check_all_stages(scene, fault)
       if (fault%code == 0) call place_histories(scene, fault)
       if (fault%code == 0) call remove_effects(scene, fault)
       if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_mesh(scene%mesh, fault)
@@ -79,24 +77,4 @@ contains
             ': the group &'//trim(NEEDED(k))//' is missing; mud_host --template prints every group.')
       end do
    end subroutine check_counts
-
-   !> Names of stages that nobody defines.
-   subroutine check_all_stages(scene, fault)
-      type(scene_t), intent(in) :: scene
-      type(fault_t), intent(inout) :: fault
-      integer :: i
-
-      do i = 1, size(scene%fixes)
-         call check_stages(scene%stages%name, scene%fixes(i)%scene_item_t, scene%fixes(i)%stages, fault)
-      end do
-      do i = 1, size(scene%loads)
-         call check_stages(scene%stages%name, scene%loads(i)%scene_item_t, scene%loads(i)%stages, fault)
-      end do
-      do i = 1, size(scene%contacts)
-         call check_stages(scene%stages%name, scene%contacts(i)%scene_item_t, scene%contacts(i)%stages, fault)
-      end do
-      do i = 1, size(scene%amplitudes)
-         call check_stages(scene%stages%name, scene%amplitudes(i)%scene_item_t, scene%amplitudes(i)%stages, fault)
-      end do
-   end subroutine check_all_stages
 end module scene_reader

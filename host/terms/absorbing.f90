@@ -18,7 +18,7 @@ module absorbing
    use linear_forces, only: linear_forces_t
    use material_point, only: response_t, batch_report_t
    use model_types, only: model_t, action_t, factor_at
-   use name_search, only: mesh_group, defined_name, check_stages
+   use name_search, only: mesh_group, defined_name
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: model_state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_parts, only: place_of
@@ -109,7 +109,6 @@ contains
             side%group = mesh_group(model%domain%mesh, boundary, place_of(side), fault)
             if (fault%code == 0 .and. history /= '') &
                side%amplitude = defined_name('history', history, model%amplitudes%name, place_of(side), fault)
-            call check_stages(model%stages%name, side%scene_item_t, side%stages, fault)
             if (fault%code /= 0) return
             if (size(model%domain%mesh%groups(side%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
                place_of(side)//'group '''//trim(boundary)//''' has no edges that waves could leave through.')

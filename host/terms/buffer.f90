@@ -12,7 +12,7 @@ module buffer
    use kinds, only: wp
    use linear_system, only: join_unknowns
    use model_types, only: model_t
-   use name_search, only: defined_name, check_stages
+   use name_search, only: defined_name
    use texts, only: LENGTH
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of, acts_in
@@ -94,7 +94,6 @@ contains
             self%plates(1, i) = defined_name('upper', one%upper, model%plates%name, place_of(one), fault)
             if (fault%code == 0) &
                self%plates(2, i) = defined_name('lower', one%lower, model%plates%name, place_of(one), fault)
-            call check_stages(model%stages%name, one%scene_item_t, one%stages, fault)
             if (fault%code /= 0) return
             if (one%upper == one%lower) call raise(fault, EXIT_INPUT, place_of(one)//'upper and lower are both '''// &
                trim(one%upper)//'''; name the two plates that the buffer lies between.')

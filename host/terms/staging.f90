@@ -12,11 +12,10 @@ module staging
    use generalised_alpha, only: make_scheme, STATIC
    use key_table, only: key_table_t
    use model_types, only: model_t, gravity_at
-   use name_search, only: check_stages
    use porous_domain, only: model_state_t, copy_state
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: scene_t
    use solution, only: solution_t
    use texts, only: whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS
@@ -62,8 +61,6 @@ contains
       there = .false.
       do i = 1, size(tables)
          call take(tables(i), stages)
-         call check_stages(model%stages%name, item_of(tables(i)%group), stages, fault)
-         if (fault%code /= 0) return
          there = there .or. size(stages) > 0
          has(i, :) = [(acts_in(stages, model%stages(s)%name), s=1, size(has, 2))]
       end do

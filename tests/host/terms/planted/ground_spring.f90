@@ -8,7 +8,7 @@ module ground_spring
    use key_table, only: key_table_t
    use linear_forces, only: linear_forces_t
    use model_types, only: model_t, action_t
-   use name_search, only: mesh_group, check_stages
+   use name_search, only: mesh_group
    use texts, only: LENGTH
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
@@ -72,7 +72,6 @@ contains
             spring%what = '&'//NAME
             call take(tables(i), spring, boundary)
             spring%group = mesh_group(model%domain%mesh, boundary, place_of(spring), fault)
-            call check_stages(model%stages%name, spring%scene_item_t, spring%stages, fault)
             if (fault%code /= 0) return
             model%actions = [model%actions, spring%action_t]
          end associate
