@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""An option of the core is one file of umat/core/options in registered slots, or of umat/core/laws where what laws ask
-depends on it: the other files of the library that name it in their code are counted. Comments and texts do not count,
-nor do the lists of PROPS and STATEV, which name all, nor a count of the report of the library (n_hysteresis, which is
-one of the reversal test)."""
+"""An option of the core is one file of umat/core/options in registered slots, or the file of what it changes and the
+others ask, the retention and the isotropic mechanism: the other files of the library that name it in their code are
+counted. Comments and texts do not count, nor do the lists of PROPS and STATEV, which name all, nor a count in the
+report of the library (n_hysteresis, which is of the reversal test)."""
 import re
 
 from checking import check
@@ -13,6 +13,7 @@ LISTS = {"mud_registry", "mud_units"}
 WORDS = {
     "mud_fluidity": r"fluid|(\b|_)ell(\b|_)",
     "mud_retention": r"(?<!n_)hyster|scann|wetting|turns_t|branch_t|\bp_?aw\b",
+    "mud_mechanism": r"remember|isotropic_memory|(?<!surface_)margin",
     "mud_preloading": r"preload|(\b|_)chi(\b|_)",
 }
 
@@ -39,7 +40,7 @@ def test_few_files_name_an_option():
                "mud_registry": "P_ICE = ice"}
     ice = {"mud_ice": r"\bice\b"}
     options = {file.stem for file in (root / "umat/core/options").glob("*.f90")} - {"mud_options"}
-    options |= {"mud_retention"}   # hysteresis: bonding and the critical state below the slots ask for S_w
+    options |= {"mud_retention", "mud_mechanism"}   # hysteresis, isotropic memory
     checks = [
         ("files that name an option in their code are counted, without its own and the lists",
          [] if crowded(planted, ice, 1) and not crowded(planted, ice, 2) else ["planted offence"]),

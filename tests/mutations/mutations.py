@@ -14,7 +14,8 @@ CUTOFF, LANDING = "core/integration/mud_cutoff.f90", "core/integration/mud_landi
 EVENT_BOUNDS, EVENT_CLOSES = "core/integration/mud_event_bounds.f90", "core/integration/mud_event_closes.f90"
 EVENT_FORWARDS, EVENT_REVERSAL = "core/integration/mud_event_forwards.f90", "core/integration/mud_event_reversal.f90"
 EVENT_MECHANISM, EVENT_DILATES = "core/integration/mud_event_mechanism.f90", "core/integration/mud_event_dilates.f90"
-ISOTROPIC_MEMORY = "core/integration/mud_isotropic_memory.f90"
+MECHANISM_ACTS = "core/integration/mud_mechanism.f90"
+MECHANISM_CHANGES = "core/tangent/mud_mechanism_changes.f90"
 PRELOADING = "core/options/mud_preloading.f90"
 FLUIDITY, OPTIONS = "core/options/mud_fluidity.f90", "core/options/mud_options.f90"
 FLOW, HARDENING, CRITICAL = "core/laws/mud_flow.f90", "core/laws/mud_hardening.f90", "core/laws/mud_critical_state.f90"
@@ -25,7 +26,6 @@ FOLLOW, FADING = "core/tangent/mud_follow.f90", "core/tangent/mud_fading.f90"
 LOADING_CHANGES, INSIDE_CHANGES = "core/tangent/mud_loading_changes.f90", "core/tangent/mud_inside_changes.f90"
 ORDER, ERROR_CONTROL = "core/integration/mud_order.f90", "core/integration/mud_error_control.f90"
 DRIVING = "core/tangent/mud_driving.f90"
-MARGIN = "core/laws/mud_margin.f90"
 WAY = "core/base/mud_way.f90"
 
 MUTATIONS = [
@@ -133,17 +133,19 @@ MUTATIONS = [
      (DIRECTION, "single_root = side*there%residual < 0.0_wp", "single_root = there%scale > 0.0_wp")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),
     # isotropic memory
-    ("contraction by shear unloads virgin soil", (MARGIN, "shear_share = exp(min(u, 0.0_wp)/DEPTH)", "shear_share = 0.0_wp*u")),
-    ("contraction by shear counts at any margin", (MARGIN, "shear_share = exp(min(u, 0.0_wp)/DEPTH)", "shear_share = 1.0_wp + 0.0_wp*u")),
+    ("contraction by shear unloads virgin soil", (MECHANISM_ACTS, "shear_share = exp(min(u, 0.0_wp)/DEPTH)", "shear_share = 0.0_wp*u")),
+    ("contraction by shear counts at any margin", (MECHANISM_ACTS, "shear_share = exp(min(u, 0.0_wp)/DEPTH)", "shear_share = 1.0_wp + 0.0_wp*u")),
     ("the isotropic mechanism never begins to rest",
-     (TRANSITIONS, "it%trial%w(1)) < 0.0_wp\n", "it%trial%w(1)) < -huge(1.0_wp)\n")),
-    ("the margin is half of what it is", (TRANSITIONS, "min(margin_after(par, it%inc, it%trial, h), 0.0_wp)",
-                                          "min(0.5_wp*margin_after(par, it%inc, it%trial, h), 0.0_wp)")),
+     (MECHANISM_ACTS, "ceases = drive_to_memory(par, inc, time, w) < 0.0_wp\n",
+      "ceases = drive_to_memory(par, inc, time, w) < -huge(1.0_wp)\n")),
+    ("the margin is half of what it is", (MECHANISM_ACTS, "min(margin_after(par, inc, trial, h), 0.0_wp)",
+                                          "min(0.5_wp*margin_after(par, inc, trial, h), 0.0_wp)")),
     ("a gap keeps the isotropic memory",
-     (TRANSITIONS, "it%state%margin = 0.0_wp\n      if (it%state%open", "it%state%margin = it%state%margin\n      if (it%state%open")),
-    ("the measure without the swelling", (MARGIN, "- 3.0_wp*m%kappa/par%lambda", "- 0.0_wp*m%kappa/par%lambda")),
+     (TRANSITIONS, "      call forget_compression(it%state)\n", "")),
+    ("the measure without the swelling", (MECHANISM_ACTS, "- 3.0_wp*m%kappa/par%critical%lambda", "- 0.0_wp*m%kappa/par%critical%lambda")),
     ("the derivative of what contraction adds to the margin left out",
-     (CONSISTENT, "margin = margin + inc%scheme%b(i)*of_margin(:, i)", "margin = margin + 0.0_wp*of_margin(:, i)")),
+     (MECHANISM_CHANGES, "short = short + inc%scheme%b(i)*below%of_stages(:, i)",
+      "short = short + 0.0_wp*below%of_stages(:, i)")),
     # memory
     ("forget to store the memory", (REVERSAL, "      memory%r_in = r_in\n", "      memory%r_in = memory%r_in\n")),
     ("forget to zero the plastic shear at a reversal",
@@ -230,9 +232,9 @@ MUTATIONS = [
     ("a switch of the isotropic mechanism that does not move",
      (EVENT_MECHANISM, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
     ("noise at what the isotropic mechanism remembers is a reversal",
-     (ISOTROPIC_MEMORY, "turns = inc%rests\n", "turns = .false.\n")),
+     (MECHANISM_ACTS, "turns = inc%rests\n", "turns = .false.\n")),
     ("shear that turns just below the isotropic memory is noise",
-     (ISOTROPIC_MEMORY, "turns = w%x >= -par%x_rev", "turns = .true.")),
+     (MECHANISM_ACTS, "turns = w%x >= -par%x_rev", "turns = .true.")),
     ("the place where a drift ends is not located", (EVENT_FORWARDS, "may = trial%drifts", "may = .false.")),
     ("the kink of preloading at D = 0 is not located",
      (EVENT_DILATES, "may = trial%w(1)%own%bends .and.", "may = .false. .and.")),

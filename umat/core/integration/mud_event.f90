@@ -18,7 +18,7 @@ module mud_event
    public :: event_t, event_changes_t, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND, NOBODY, ORDINARY, &
              ELASTIC, HELD, EXACT, EXACT_TRIALS, NEARLY, FEW_TRIALS, SHARP_KINK, last_rate, switches, elastic_rate, &
              psi_at
-   public :: NOTHING, BY_STATE, BY_RATE, BY_DRIVE, BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MARGIN
+   public :: NOTHING, BY_STATE, BY_RATE, BY_DRIVE, BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MEMORY
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
              EVENT_TURN, EVENT_PARTS, EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS
 
@@ -61,7 +61,7 @@ module mud_event
    integer, parameter :: BY_VIRGIN_RATE = 4   !< The rate there, whose memory is the stress ratio.
    integer, parameter :: BY_SURFACE = 5       !< State parameter, and excess over the bounding surface.
    integer, parameter :: BY_MECHANISM = 6     !< The drive of the isotropic mechanism.
-   integer, parameter :: BY_MARGIN = 7        !< The margin of the isotropic memory.
+   integer, parameter :: BY_MEMORY = 7        !< The way to the memory of the isotropic mechanism.
 
    !> A kink is looked for where the error of a substep is above this share of the tolerance [-].
    real(wp), parameter :: SHARP_KINK = 0.01_wp
@@ -82,7 +82,7 @@ module mud_event
    type :: event_changes_t
       real(wp) :: y(LANES, NY), rates(LANES, NY)   !< changes of the integrated vector, of its rates
       real(wp), dimension(LANES, 6) :: r, r_in, n, strain   !< changes of stress ratio, memory, direction, strain step
-      real(wp), dimension(LANES) :: e, d_pc, psi, excess, mechanism, margin, drive   !< changes of void ratio, ...
+      real(wp), dimension(LANES) :: e, d_pc, psi, excess, mechanism, drive   !< changes of void ratio, ...
    end type event_changes_t
 
    logical, parameter, dimension(MODE_ORDINARY:MODE_HELD) :: NOBODY = [.false., .false., .false.], &

@@ -4,8 +4,8 @@ module mud_event_reversal
    use mud_error_control, only: changes_root
    use mud_event, only: event_t, event_changes_t, RATE_THERE, AT, BY_DRIVE, ORDINARY, EXACT, EXACT_TRIALS, last_rate
    use mud_increment, only: increment_t, rate_of, store_rate
-   use mud_isotropic_memory, only: turns_by_resting
    use mud_kinds, only: wp
+   use mud_mechanism, only: turns_by_resting
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_state, only: counters_t
@@ -38,7 +38,7 @@ contains
 
       possible = may_reverse(par, inc, trial)
       if (.not. possible) return
-      call turns_by_resting(par, inc, trial, trial%time + h, trial%y, trial%margin, counters, rests)
+      call turns_by_resting(par, inc, trial, trial%time + h, trial%y, counters, rests)
       possible = .not. rests
       if (rests) return
       shorter = h

@@ -20,8 +20,8 @@ module mud_event_table
    use mud_event_unload, only: UNLOAD, may_unload
    use mud_event_yield, only: YIELD, may_yield, yield_function, slopes_of_yield, yielded
    use mud_increment, only: increment_t, void_ratio_at
-   use mud_isotropic_memory, only: drive_of_margin
    use mud_kinds, only: wp
+   use mud_mechanism, only: drive_to_memory
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio
@@ -136,7 +136,7 @@ contains
       case (EVENT_YIELD)
          f = yield_function(par, inc, trial, time)
       case (EVENT_UNLOAD)
-         f = drive_of_margin(par, inc, time, w)
+         f = drive_to_memory(par, inc, time, w)
       case (EVENT_MECHANISM)
          f = mechanism_function(trial, w)
       case (EVENT_DILATES)

@@ -6,6 +6,7 @@ module mud_start
    use mud_checks, only: check_stress
    use mud_critical_state, only: state_parameter
    use mud_cutoff, only: lifted, soil_void_ratio
+   use mud_mechanism, only: forget_compression
    use mud_options, only: new_numbers
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
@@ -46,6 +47,7 @@ contains
       state%e = e
       state%gap = 0.0_wp
       call new_numbers(state)
+      call forget_compression(state)
       state%p_c = p_c
       state%z = 0.0_wp
       state%from_centre = 0.0_wp

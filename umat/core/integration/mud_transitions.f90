@@ -2,7 +2,6 @@
 !> Transitions between substeps: the mode of the coming one, reversals and returns of the memory, opening and closing at
 !> p_min, and what an accepted substep leaves behind.
 module mud_transitions
-   use mud_isotropic_memory, only: drive_of_margin, turns_by_resting, margin_after
    use mud_kinds, only: wp
    use mud_bounding, only: excess
    use mud_cutoff, only: landed, may_open, parting, gap_at, MODE_HELD
@@ -14,6 +13,7 @@ module mud_transitions
    use mud_events, only: note_turning_point
    use mud_increment, only: rate_of
    use mud_integration, only: integration_t, note_jump, JUMP_NONE, JUMP_REVERSAL, JUMP_RETURN, JUMP_NEW
+   use mud_mechanism, only: forget_compression, begin_mechanism, mechanism_ceases, keep_compression, turns_by_resting
    use mud_options, only: begin_numbers, take_past, forget_past, past_counts, keep_numbers
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -44,7 +44,7 @@ contains
       it%trial%y0(Y_SHEAR) = 0.0_wp
       call begin_numbers(it%state, it%trial%y0)
       it%trial%e = it%state%e
-      if (par%remembers) call begin_below_memory(it)
+      call begin_mechanism(par, it%state, it%inc, it%trial, it%known)
       it%jump = JUMP_NONE
       it%n_jumps = 0
       it%trial%watched = 0
@@ -81,7 +81,10 @@ contains
                              it%event == EVENT_FORWARDS
       end if
 
-      if (par%remembers) call try_to_unload(par, it)
+      if (mechanism_ceases(par, it%inc, it%trial%time, it%trial%w(1))) then
+         it%inc%rests = .true.
+         call first_rate(par, it)
+      end if
       if (may_open(par, it%state%sigma, it%trial%w(1)%d_p)) call try_to_close(par, r, it)
       if (it%trial%mode == MODE_ORDINARY .and. it%trial%w(1)%loading .and. .not. it%trial%advanced) then
          if (drags_memory(par)) it%trial%drifts = backwards(it%trial%w(1)) > 0.0_wp
@@ -101,28 +104,6 @@ contains
       it%trial%r_in = it%state%memory%r_in
       call take_past(par, it%state%memory, it%trial%y0, it%trial%past)
    end subroutine take_memory
-
-   !> Below what it remembers the isotropic mechanism rests. A rate that is known is that of what it did before.
-   pure subroutine begin_below_memory(it)
-      type(integration_t), intent(inout) :: it
-      logical :: rests
-
-      rests = it%state%margin < 0.0_wp
-      if (rests .neqv. it%inc%rests) it%known = .false.
-      it%inc%rests = rests
-      it%trial%margin = it%state%margin
-   end subroutine begin_below_memory
-
-   !> Lets the isotropic mechanism rest that is at its memory, where compression ceases. docs/theory/material.md section
-   !> 4.10.
-   pure subroutine try_to_unload(par, it)
-      type(params_t), intent(in) :: par
-      type(integration_t), intent(inout) :: it
-
-      if (it%inc%rests) return
-      it%inc%rests = drive_of_margin(par, it%inc, it%trial%time, it%trial%w(1)) < 0.0_wp
-      if (it%inc%rests) call first_rate(par, it)
-   end subroutine try_to_unload
 
    !> The rate where the coming substep begins, of its mode and memory.
    pure subroutine first_rate(par, it)
@@ -161,7 +142,7 @@ contains
          noise = it%trial%w(1)%x >= -par%x_rev .and. it%event /= EVENT_REVERSAL
          ! At a place that was located x is -x_rev but for rounding: there it was asked at the end of the substep.
          if (.not. noise .and. it%event /= EVENT_REVERSAL) call turns_by_resting( &
-            par, it%inc, it%trial, it%trial%time, it%trial%y0, it%state%margin, it%counters, noise)
+            par, it%inc, it%trial, it%trial%time, it%trial%y0, it%counters, noise)
          if (noise) then
             it%counters%held_back = it%counters%held_back + 1
             return
@@ -238,7 +219,7 @@ contains
 
       it%trial%watched = 0
       it%inc%rests = .false.
-      it%state%margin = 0.0_wp
+      call forget_compression(it%state)
       if (it%state%open .and. (it%known .or. it%state%gap > 0.0_wp)) then
          it%trial%w(1)%no_root = .false.
       else
@@ -277,7 +258,7 @@ contains
       it%state%z = it%trial%y(Y_Z:Y_Z_END)
       it%state%eps_q_total = it%state%eps_q_total + it%trial%y(Y_SHEAR)
       call keep_numbers(par, it%trial%y0, it%trial%y, it%state)
-      if (it%inc%rests) it%state%margin = min(margin_after(par, it%inc, it%trial, h), 0.0_wp)
+      call keep_compression(par, it%inc, it%trial, h, it%state)
       it%state%sigma = landed(par, it%state%sigma)
       call event_happened(it%event, it%trial, it%state)
       if (it%trial%drifts) then

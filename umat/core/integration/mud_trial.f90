@@ -47,7 +47,7 @@ module mud_trial
       real(wp) :: held_error        !< Error of a held substep's stress ratio [-].
       real(wp) :: e                 !< Void ratio at y0 [-].
       real(wp) :: past              !< A number of the memory beside y0, for options [-].
-      real(wp) :: margin            !< Margin of the isotropic memory at y0; read where the mechanism rests [-].
+      real(wp) :: below             !< Margin of y0 to the memory of the isotropic mechanism; read where that rests [-].
       integer :: watched            !< The interrupted process whose target is looked for, 0: none.
       type(interrupted_t) :: process   !< The interrupted process of that number.
    end type trial_t

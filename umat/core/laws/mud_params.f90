@@ -15,7 +15,6 @@ module mud_params
       P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, &
       P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI, P_C_ELL, P_ELL_MAX, P_P_ELL, P_R_ELL, &
       ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
-   use mud_margin, only: margin_t
    use mud_retention, only: retention_t
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
@@ -63,11 +62,12 @@ module mud_params
       type(critical_t) :: critical
       type(flow_t) :: flow
       type(hardening_t) :: hardening
-      type(margin_t) :: margin         !< Isotropic memory.
       type(suction_law_t) :: suction   !< Retention and bonding.
       real(wp) :: e_0, p_atm, p_min
       logical :: isotropic, cutoff
       logical :: remembers  !< The isotropic mechanism has a memory.
+      !> Where the isotropic mechanism acted nearby a rate is tried with it first. Its memory asks for the rate without.
+      logical :: guesses_mechanism
       integer :: memory_rule
       real(wp) :: eps_hat, j_exp
       real(wp) :: x_floor   !< Floor of (r - r_in):n, NO_FLOOR with the guard off [-].
@@ -178,12 +178,12 @@ contains
                            fabric=real(whole(props(P_FABRIC)), wp))
       params%hardening = hardening_t(stiffness=props(P_H_0)*props(P_G_0), c_h=props(P_C_H), theta=props(P_THETA), &
                                      p_atm=props(P_P_ATM))
-      params%margin = margin_t(lambda=props(P_LAMBDA), p_atm=props(P_P_ATM))
       params%largest_stress = LARGEST_STRESS*stress_unit(props)
       params%largest_suction_step = LARGEST_SUCTION_STEP*stress_unit(props)
       params%suction%bonds = whole(props(P_BONDING)) == 1
       params%isotropic = whole(props(P_ISOTROPIC)) /= ISOTROPIC_NONE
       params%remembers = whole(props(P_ISOTROPIC)) == ISOTROPIC_REMEMBERS
+      params%guesses_mechanism = .not. params%remembers
       if (whole(props(P_LODE)) == 0) params%critical%c = 1.0_wp
       params%memory_rule = whole(props(P_MEMORY_RULE))
       params%eps_hat = props(P_EPS_HAT)

@@ -58,7 +58,6 @@ contains
    pure subroutine new_numbers(state)
       type(state_t), intent(inout) :: state
 
-      state%margin = 0.0_wp
       state%fluidity = 0.0_wp
    end subroutine new_numbers
 

@@ -85,7 +85,7 @@ contains
       w%iso_kept = .false.
       w%iso_drive = -1.0_wp
       if (present(near)) then
-         if (near%iso_active .and. .not. par%remembers) then
+         if (near%iso_active .and. par%guesses_mechanism) then
             call load(par, d_v, d_e, d_norm, d_pc, mode, .true., w)
             if (is_certain(par, d_v, d_e, w)) w%iso_drive = w%iso%a*w%d_p/w%p + w%b_rate
             if (w%iso_drive <= 0.0_wp) call start_direction(near, w)
@@ -93,7 +93,7 @@ contains
       end if
       if (w%iso_drive <= 0.0_wp) then
          call load(par, d_v, d_e, d_norm, d_pc, mode, .false., w)
-         if (par%remembers) w%swell = max(-w%l*w%d, 0.0_wp)
+         w%swell = max(-w%l*w%d, 0.0_wp)
          w%iso_drive = w%iso%a*w%d_p/w%p + w%iso%b*d_pc
          if (w%iso_drive > 0.0_wp) then
             call load(par, d_v, d_e, d_norm, d_pc, mode, .true., w)

@@ -9,8 +9,7 @@ module mud_consistent
    use mud_kinds, only: wp
    use mud_loading, only: loading_t
    use mud_loading_changes, only: changes_of_loading_strain
-   use mud_isotropic_memory, only: margins_at_stages
-   use mud_margin_changes, only: changes_of_measure, changes_by_shear
+   use mud_mechanism_changes, only: below_t, begin_below, follow_below, end_below
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
    use mud_fading, only: fading_t, NO_FADING, begin_fading, change_of_left, add_changes_of_faded
@@ -36,7 +35,7 @@ module mud_consistent
    implicit none (type, external)
    private
    public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, &
-             changes_of_parting, change_with_size, changes_at_memory, changes_along, changes_of_ratio, &
+             changes_of_parting, change_with_size, changes_along, changes_of_ratio, &
              linearise_stage
 
    !> Derivatives along the directions of driving_t.
@@ -54,8 +53,7 @@ module mud_consistent
       real(wp) :: interrupted(DIRECTIONS, 6, MAX_INTERRUPTED)
       integer :: settled
       type(past_changes_t) :: past           !< derivatives of what the memory says for options
-      !> Derivatives of the isotropic memory's margin less its measure; not read where the isotropic mechanism acts.
-      real(wp) :: margin(DIRECTIONS)
+      real(wp) :: short(DIRECTIONS)          !< derivatives of what lacks to the memory of the isotropic mechanism
       real(wp) :: parts(DIRECTIONS)          !< derivatives of the void ratio at which the grains of a held point part
       type(driving_t) :: driving
       type(fading_t) :: fading               !< derivatives of what fades of the rates, where that is known
@@ -76,7 +74,7 @@ contains
       call no_past_changes(sens%past)
       sens%shift = 0.0_wp
       sens%parts = 0.0_wp
-      sens%margin = 0.0_wp
+      sens%short = 0.0_wp
       sens%settled = depth
       call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
@@ -122,7 +120,7 @@ contains
          end if
          ! at the end of the whole increment only the stress is asked for
          call through_stages(par, inc, trial, h, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
-                             sens%driving, sens%fading, rates, sens%y, sens%margin)
+                             sens%driving, sens%fading, rates, sens%y, sens%short)
       end if
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
@@ -130,19 +128,19 @@ contains
 
    !> Derivative of the end of a substep with respect to its size. Per unit of h, a share of inc; [kPa, -, -] for
    !> sigma', z and plastic shear. docs/theory/integration.md section 4.3.
-   pure subroutine change_with_size(par, inc, trial, h, change, of_margin)
+   pure subroutine change_with_size(par, inc, trial, h, change, of_short)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       real(wp), intent(out) :: change(NY)
-      real(wp), intent(out) :: of_margin   !< Derivative of the isotropic memory's margin less its measure [-].
-      real(wp), dimension(DIRECTIONS) :: none, one, margin
+      real(wp), intent(out) :: of_short   !< Derivative of what lacks to the memory of the mechanism, see below_t [-].
+      real(wp), dimension(DIRECTIONS) :: none, one, short
       real(wp) :: rates(DIRECTIONS, NY, MAX_STAGES), y(DIRECTIONS, NY)
 
       none = 0.0_wp
       one = 1.0_wp
-      margin = 0.0_wp
+      short = 0.0_wp
       rates(:, :, 1) = 0.0_wp
       y = 0.0_wp
       if (trial%mode == MODE_HELD) then
@@ -151,15 +149,15 @@ contains
          call changes_inside(par, inc, trial%y0, trial%time, h, none, one, AT_REST, y)
       else
          call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, rates, y, &
-                             margin)
+                             short)
       end if
       change = y(1, :)
-      of_margin = margin(1)
+      of_short = short(1)
    end subroutine change_with_size
 
    !> The scheme applied to all directions as one long vector, from the changes of its first rate: its start moves by
    !> `shift` in pseudo-time, its size changes by dh.
-   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, rates, y1, margin)
+   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, rates, y1, short)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
@@ -170,22 +168,18 @@ contains
       type(fading_t), intent(in) :: fading
       real(wp), intent(inout) :: rates(DIRECTIONS*NY, MAX_STAGES)   !< The first is given.
       real(wp), intent(inout) :: y1(DIRECTIONS*NY)
-      real(wp), intent(inout) :: margin(DIRECTIONS)   !< Derivatives of the isotropic memory's margin less its measure.
-      real(wp) :: y(DIRECTIONS*NY), time, dt(DIRECTIONS), &
-         of_margin(DIRECTIONS, MAX_STAGES), du(DIRECTIONS), of_stages(MAX_STAGES), at_stages(MAX_STAGES), start, &
-         left(MAX_STAGES + 1), d_left(DIRECTIONS, MAX_STAGES + 1)
-      integer :: i, j, last, row, live, n
-      logical :: moves, follows
+      real(wp), intent(inout) :: short(DIRECTIONS)   !< Derivatives of what lacks to the memory, see below_t.
+      real(wp) :: y(DIRECTIONS*NY), time, dt(DIRECTIONS), left(MAX_STAGES + 1), d_left(DIRECTIONS, MAX_STAGES + 1)
+      type(below_t) :: below
+      integer :: i, last, row, live, n
+      logical :: moves
 
       ! the last stage of such a pair serves the error estimate and the next substep, not the solution
       last = inc%scheme%stages
       if (inc%scheme%first_same_as_last) last = last - 1
       moves = any(abs(dh) > 0.0_wp)
-      follows = inc%rests .and. .not. ends
-      if (follows) then
-         call margins_at_stages(par, inc, trial, h, at_stages, of_stages, start)
-         of_margin(:, 1) = stage_of_margin(1, trial%y0, trial%time, shift, margin, y1, rates(:, 1))
-      end if
+      call begin_below(par, inc, trial, h, ends, below)
+      call follow_below(par, inc, trial, h, 1, trial%y0, trial%time, shift, dh, short, driving, y1, rates(:, 1), below)
       live = live_numbers(par)
       n = DIRECTIONS*live
       if (trial%transient%known) &
@@ -204,13 +198,8 @@ contains
             call change_of_stage(par, inc, trial%mode, trial%w(i), trial%points(:, i), time, .false., &
                                  ends .and. i == last, dt, r_in, driving, y, rates(:, i))
          end associate
-         if (follows) then
-            du = margin
-            do j = 1, i - 1
-               du = du + inc%scheme%a(row + j)*of_margin(:, j)
-            end do
-            of_margin(:, i) = stage_of_margin(i, trial%points(:, i), time, dt, du, y, rates(:, i))
-         end if
+         call follow_below(par, inc, trial, h, i, trial%points(:, i), time, dt, dh, short, driving, y, rates(:, i), &
+                           below)
          call finish_stage(trial, h, i, live, moves, dh, rates)
       end do
       if (ends) live = 6   ! stresses stand first
@@ -224,40 +213,8 @@ contains
             call add_changes_of_faded(trial%transient, fading, last, h, weights, left, d_left, live, y1(1:n))
          end if
       end associate
-      if (follows) then
-         do i = 1, last
-            margin = margin + inc%scheme%b(i)*of_margin(:, i)
-         end do
-      end if
-   contains
-      !> Contribution of the rate of stage i over the whole substep to the margin of the isotropic memory less its
-      !> measure.
-      pure function stage_of_margin(i, point, time, dt, before, y, rate) result(change)
-         integer, intent(in) :: i
-         real(wp), intent(in) :: point(NY), time, dt(DIRECTIONS), before(DIRECTIONS), y(DIRECTIONS, NY), &
-            rate(DIRECTIONS, NY)
-         real(wp), dimension(DIRECTIONS) :: change, de, dp_c, du
-
-         call change_of_place(inc, time, void_ratio_at(inc, time), dt, driving, de, dp_c)
-         du = before + changes_of_measure(par, inc, time, point(1:6), y(:, 1:3), de, dp_c, driving%scans, driving%turn)
-         change = h*changes_by_shear(par, inc, time, trial%w(i), at_stages(i), du, y(:, 1:3), de, dp_c, &
-                                   rate(:, 1:3), driving%d_v) + of_stages(i)*dh
-      end function stage_of_margin
+      call end_below(inc, last, below, short)
    end subroutine through_stages
-
-   !> Sets the derivatives of the isotropic memory's margin where the mechanism is at its memory and has none: those of
-   !> the measure.
-   pure subroutine changes_at_memory(par, inc, time, sigma, sens)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, sigma(6)   !< Where the next substep begins.
-      type(sensitivity_t), intent(inout) :: sens
-      real(wp), dimension(DIRECTIONS) :: de, dp_c
-
-      call change_of_place(inc, time, void_ratio_at(inc, time), sens%shift, sens%driving, de, dp_c)
-      sens%margin = -changes_of_measure(par, inc, time, sigma, sens%y(:, 1:3), de, dp_c, sens%driving%scans, &
-                                        sens%driving%turn)
-   end subroutine changes_at_memory
 
    !> Derivatives of what fades of the rates from the start of this substep on, whose first rate changes by now. Where
    !> the strain does not turn yet, what a turn would add fades too: by the first power of its angle as exp(-k t).

@@ -7,13 +7,13 @@ module mud_event_time
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: driving_t, DIRECTIONS
    use mud_event, only: event_changes_t, psi_at, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BY_RATE, BY_DRIVE, &
-      BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MARGIN
+      BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MEMORY
    use mud_event_closes, only: closing_mode, rate_without_past
    use mud_event_table, only: EVENTS, slopes_of_event
    use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
    use mud_kinds, only: wp
    use mud_linearise, only: linearised_t, changes_t
-   use mud_margin_changes, only: changes_of_measure
+   use mud_mechanism_changes, only: changes_of_short
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows
@@ -47,7 +47,7 @@ contains
       type(counters_t) :: uncounted
       type(tensors_t) :: r_in
       real(wp) :: with_size(NY), y(DIRECTIONS, NY), dt(DIRECTIONS), slopes(DIRECTIONS), e, time, dh, &
-         margin(DIRECTIONS), margin_with_size
+         short(DIRECTIONS), short_with_size
       integer :: j, mode
 
       time = trial%time + h
@@ -60,9 +60,9 @@ contains
       case (RATE_IF_CLOSED)
          call rate_without_past(par, inc, time, trial%y, w, uncounted)
       end select
-      call change_with_size(par, inc, trial, h, with_size, margin_with_size)
-      margin = sens%margin
-      margin(BY_SIZE) = margin_with_size
+      call change_with_size(par, inc, trial, h, with_size, short_with_size)
+      short = sens%short
+      short(BY_SIZE) = short_with_size
       y = sens%y
       y(BY_SIZE, :) = with_size
       r_in = sens%r_in
@@ -72,7 +72,7 @@ contains
       call changes_along(inc, mode, time, e, dt, sens%driving, changes)
       if (EVENTS(event)%looks_at /= NO_RATE) &
          call linearise_stage(par, inc, w, trial%y, time, e, changes%loading, lin)
-      call fill_changes(par, inc, event, trial, time, w, lin, y, r_in, margin, sens%driving, changes, c)
+      call fill_changes(par, inc, event, trial, time, w, lin, y, r_in, short, sens%driving, changes, c)
       slopes = slopes_of_event(par, inc, event, trial, time, w, c)
       do j = 1, DIRECTIONS - 1
          if (abs(slopes(BY_SIZE)) <= GRAZING*abs(slopes(j))) cycle
@@ -83,7 +83,7 @@ contains
    end subroutine move_event
 
    !> Changes with which the function of an event changes, at a pseudo-time.
-   pure subroutine fill_changes(par, inc, event, trial, time, w, lin, y, r_in, margin, driving, changes, c)
+   pure subroutine fill_changes(par, inc, event, trial, time, w, lin, y, r_in, short, driving, changes, c)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: event
@@ -93,7 +93,7 @@ contains
       type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: y(DIRECTIONS, NY)   !< changes of state
       type(tensors_t), intent(in) :: r_in         !< and memory
-      real(wp), intent(in) :: margin(DIRECTIONS)  !< and of the isotropic memory's margin less its measure
+      real(wp), intent(in) :: short(DIRECTIONS)   !< and of what lacks to the memory of the isotropic mechanism
       type(driving_t), intent(in) :: driving
       type(changes_t), intent(in) :: changes
       type(event_changes_t), intent(inout) :: c
@@ -116,9 +116,9 @@ contains
          case (BY_VIRGIN_RATE)
             call changes_of_rate(par, w, lin, .false., y, tensors_t(c%r, ANY_TENSORS), strain, centre, changes, &
                                  .false., c%rates)
-         case (BY_MARGIN)
-            c%margin = margin + changes_of_measure(par, inc, time, trial%y(1:6), y(:, 1:3), changes%e, changes%p_c, &
-                                                   changes%scans, changes%turn)
+         case (BY_MEMORY)
+            c%mechanism = changes_of_short(par, inc, time, trial%y(1:6), short, y(:, 1:3), changes%e, changes%p_c, &
+                                           changes%scans, changes%turn)
          case (BY_SURFACE)
             call change_surface(par, inc, trial, time, changes, c)
          end select

@@ -2,7 +2,7 @@
 !> The derivatives of the consistent tangent follow an update: they read what it left of a phase, a turn of suction, a
 !> substep, and nothing of theirs goes back; docs/theory/integration.md section 5.3.
 module mud_follow
-   use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_at_memory, changes_of_parting, &
+   use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_of_parting, &
       changes_of_ratio, jump_of_memory
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
@@ -11,6 +11,7 @@ module mud_follow
    use mud_increment, only: increment_t
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
+   use mud_mechanism_changes, only: changes_at_memory
    use mud_options, only: keep_past_changes
    use mud_params, only: params_t
    use mud_phases, only: cut_t, CUT_TURN, CUT_NO_SUCTION, CUT_EXIT, CUT_KINK
@@ -85,7 +86,6 @@ contains
          if (trial%mode /= MODE_HELD) call keep_past_changes(par, trial%y0, trial%y, trial%past, sens%y, sens%past)
          if (trial%drifts) sens%r_in = tensors_t(changes_of_ratio(par, it%state%sigma, sens%y), ANY_TENSORS)
       end associate
-      if (par%remembers .and. it%state%margin >= 0.0_wp) &
-         call changes_at_memory(par, it%inc, it%reached, it%state%sigma, sens)
+      call changes_at_memory(par, it%inc, it%state, it%reached, sens%shift, sens%driving, sens%y, sens%short)
    end subroutine follow_substep
 end module mud_follow
