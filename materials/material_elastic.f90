@@ -33,8 +33,6 @@ contains
       type(fault_t), intent(inout) :: fault
       real(wp) :: young, poisson
 
-      associate (unused => title, never => fault)
-      end associate
       young = 0.0_wp
       poisson = -1.0_wp
       call k%number('young', young, 1.0e-30_wp, UNBOUNDED, 'Young''s modulus [kPa]', REQUIRED)
@@ -64,8 +62,6 @@ contains
       type(saturation_t) :: sat
 
       text = ''
-      associate (unused => stress)   ! any stress will do
-      end associate
       sat = self%retention(suction, void_ratio)
       state(PLACE_E) = void_ratio
       state(PLACE_S_W) = sat%s
@@ -120,15 +116,13 @@ contains
    pure real(wp) function default_void_ratio(self)
       class(elastic_t), intent(in) :: self
 
-      default_void_ratio = 0.0_wp*self%young
+      default_void_ratio = 0.0_wp
    end function default_void_ratio
 
    pure real(wp) function void_ratio(self, state)
       class(elastic_t), intent(in) :: self
       real(wp), intent(in) :: state(:)
 
-      associate (unused => self)
-      end associate
       void_ratio = state(PLACE_E)
    end function void_ratio
 
@@ -136,8 +130,6 @@ contains
       class(elastic_t), intent(in) :: self
       real(wp), intent(in) :: state(:)
 
-      associate (unused => self)
-      end associate
       saturation = state(PLACE_S_W)
    end function saturation
 end module material_elastic

@@ -167,8 +167,6 @@ contains
       integer, intent(out) :: place
       character(*), intent(out) :: text
 
-      associate (unused => self)
-      end associate
       text = ''
       place = 0
       if (name == STRENGTH) place = property_index(STRENGTH)
@@ -311,8 +309,6 @@ contains
       type(mud_report) :: of_library
       character(BUFFER) :: raw
 
-      associate (unused => self)
-      end associate
       of_library = mud_report(status=report%code, subject=report%subject, index=report%entry, n_rate=report%n_rate, &
                               n_substep=report%n_substep, n_reject=report%n_reject, n_reset=0, n_floor=0, n_cap_d=0, &
                               n_cap_h=0, n_hysteresis=0, n_iso_kept=0, n_no_root=0, n_min_step=0, n_open=0, &

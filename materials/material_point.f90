@@ -289,8 +289,6 @@ contains
       class(material_t), intent(in) :: self
       type(remark_t), allocatable, intent(out) :: list(:)
 
-      associate (unused => self)
-      end associate
       allocate (list(0))
    end subroutine no_remarks
 

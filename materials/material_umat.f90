@@ -329,8 +329,6 @@ contains
    pure real(wp) function default_void_ratio(self)
       class(umat_t), intent(in) :: self
 
-      associate (unused => self)
-      end associate
       default_void_ratio = 0.0_wp
    end function default_void_ratio
 
@@ -368,8 +366,6 @@ contains
       real(wp), intent(in) :: before(:), after(:)
       character(*), intent(out) :: text
 
-      associate (unused => before)
-      end associate
       text = ''
       self%props(places) = after*self%props(places)
    end subroutine change_over_step

@@ -4,8 +4,7 @@ module retention_curves
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: retention_t, saturation_t, saturated_t, bilogarithmic_t, van_genuchten_t, power_t, table_t, &
-             retention_slot_t
+   public :: retention_t, saturation_t, saturated_t, bilogarithmic_t, van_genuchten_t, power_t, table_t
 
    type :: saturation_t
       real(wp) :: s = 1.0_wp        !< S_w [-]
@@ -17,11 +16,6 @@ module retention_curves
    contains
       procedure(at_i), deferred :: at
    end type retention_t
-
-   type :: retention_slot_t
-      character(64) :: name = ''
-      class(retention_t), allocatable :: law
-   end type retention_slot_t
 
    abstract interface
       !> Degree of saturation and its slopes, units as in saturation_t. Nothing is refused, e > 0 is not checked; the
@@ -76,8 +70,6 @@ contains
       real(wp), intent(in) :: p_c, e
       type(saturation_t) :: sat
 
-      associate (unused => p_c + e, same => self)
-      end associate
       sat = saturation_t()
    end function saturated_at
 
@@ -115,8 +107,6 @@ contains
       real(wp), parameter :: LOG_LARGE = 200.0_wp
       real(wp) :: log_a, share, log_sum, s_e
 
-      associate (unused => e)
-      end associate
       sat%s = self%s_max
       if (p_c <= 0.0_wp) return
       log_a = self%n*log(self%alpha*p_c)
@@ -139,8 +129,6 @@ contains
       real(wp), intent(in) :: p_c, e
       type(saturation_t) :: sat
 
-      associate (unused => e)
-      end associate
       if (p_c <= 0.0_wp) return
       sat%s = 1.0_wp - self%a*p_c**self%b
       sat%ds_dpc = -self%a*self%b*p_c**(self%b - 1.0_wp)
@@ -155,8 +143,6 @@ contains
       type(saturation_t) :: sat
       integer :: i, n, low, high
 
-      associate (unused => e)
-      end associate
       n = size(self%s)
       sat%s = self%s(1)
       if (p_c <= self%p_c(1)) return

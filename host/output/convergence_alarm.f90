@@ -27,7 +27,7 @@ contains
       type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
-      associate (stage => model%stages(news%stage), never => fault)
+      associate (stage => model%stages(news%stage))
          if (run%at%step == 1 .and. allocated(run%at%sudden)) &
             call print_warning('stage '//trim(stage%name)//': its loads act at once and the '// &
                'first step did not converge: they are applied evenly over the stage. A material with a '// &

@@ -48,7 +48,7 @@ contains
       type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
-      associate (stage => model%stages(news%stage), never => fault)
+      associate (stage => model%stages(news%stage))
          call warn_of_oscillation(model, stage, run%next, self%lines, self%told_oscillation)
          call warn_lost_pressure(model, run%next, self%told_pressure)
          call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, self%told_inflow)

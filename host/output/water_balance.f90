@@ -88,7 +88,7 @@ contains
       character(:), allocatable :: of_what
       real(wp) :: missing
 
-      associate (water => self%water, stage => model%stages(run%at%stage), unused => news%complete, never => fault)
+      associate (water => self%water, stage => model%stages(run%at%stage))
          missing = water%received - water%left - water%gained
          if (model%domain%full_rate .and. &
              abs(missing) > max(ALARMING_SHARE*water%moved, INSIDE_SHARE*water%turned)) then

@@ -35,8 +35,6 @@ contains
       type(fault_t), intent(inout) :: fault
       type(hypoelastic_t) :: made
 
-      associate (unused => title, never => fault)
-      end associate
       call k%number('stiffness', made%stiffness, 1.0e-3_wp, UNBOUNDED, 'bulk modulus over mean stress [-]', REQUIRED)
       call k%number('poisson', made%poisson, -0.99_wp, 0.49_wp, 'Poisson''s ratio [-]')
       made%exact_tangent = .true.
@@ -109,16 +107,12 @@ contains
       type(batch_report_t), intent(in) :: report
       character(*), intent(out) :: text
 
-      associate (unused => self)
-      end associate
       write (text, '(a,es10.2,a)') 'the hypoelastic law needs pressure; the mean stress is ', report%value, ' kPa.'
    end subroutine message
 
    pure real(wp) function default_void_ratio(self)
       class(hypoelastic_t), intent(in) :: self
 
-      associate (unused => self)
-      end associate
       default_void_ratio = 0.0_wp
    end function default_void_ratio
 
@@ -126,8 +120,6 @@ contains
       class(hypoelastic_t), intent(in) :: self
       real(wp), intent(in) :: state(:)
 
-      associate (unused => self)
-      end associate
       void_ratio = state(PLACE_E)
    end function void_ratio
 
@@ -135,8 +127,6 @@ contains
       class(hypoelastic_t), intent(in) :: self
       real(wp), intent(in) :: state(:)
 
-      associate (unused => self)
-      end associate
       saturation = state(PLACE_S_W)
    end function saturation
 end module material_hypoelastic
