@@ -23,7 +23,7 @@ HERE = "studies/localisation"
 INDENTATION = ROOT / "verification/studies/indentation/indent_s030.nml"
 DURATION = 0.024    # [s] Of the impact: beyond the largest settlement, at 20.6 ms.
 # Suction [kPa], viscosity [kPa s], meshes; the finest at 3 kPa, where meshes decide.
-CASES = ((3, 0, (0.5, 1, 2, 3)), (3, 0.2, (0.5, 1, 2, 3)), (3, 1.0, (0.5, 1, 2)), (10, 0, (0.5, 1, 2)),
+CASES = ((3, 0, (0.5, 1, 2, 3, 4)), (3, 0.2, (0.5, 1, 2, 3)), (3, 1.0, (0.5, 1, 2, 3)), (10, 0, (0.5, 1, 2, 3)),
          (30, 0, (0.5, 1, 2)), (30, 0.2, (0.5, 1)), (100, 0, (0.5, 1)))
 SECONDS = 25        # Of the processor, for a scene: what a scene has not come to by then is told.
 INDENTED = ("suction", "viscosity", "fineness", "share", "since_ms", "settlement_mm", "thrust_kN", "impulse_kNs", "p_w_kPa",
