@@ -174,7 +174,10 @@ contains
       type(test_stage_t) :: no_stage
       type(fault_t) :: none
 
-      tables = [of_unit(listing('case'), unit), of_unit(listing('initial'), unit), of_unit(listing('stage'), unit)]
+      ! one by one: gfortran 12 does not free what functions in an array constructor allocate
+      tables(1) = of_unit(listing('case'), unit)
+      tables(2) = of_unit(listing('initial'), unit)
+      tables(3) = of_unit(listing('stage'), unit)
       call read_settings(tables(1), nothing)
       call read_initial(tables(2), nothing%soil, nothing%start, none)
       call read_stage(tables(3), no_stage, none)

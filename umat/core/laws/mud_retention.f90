@@ -815,7 +815,8 @@ contains
       real(wp) :: log_x, limit
       integer :: i
 
-      if (.not. self%hysteresis .or. status%code /= MUD_OK) return
+      if (status%code /= MUD_OK) return   ! a refused set has no retention
+      if (.not. self%hysteresis) return
       wet = main_curve(self, .false.)
       limit = log(self%p_a)
       do i = 0, POINTS
