@@ -73,16 +73,8 @@ contains
       call k%numbers('d_sigma', six, -LARGEST, LARGEST, 'change of the stresses 11, 22, 33, 12, 13, 23 (stress_path)', &
                      unit=KPA, count=ROWS)
       if (size(six) == ROWS) stage%changes = six
-      do i = 1, ROWS
-         call k%numbers('strain_'//whole(i), six, -FACTOR, FACTOR, &
-                        'factors of the six strains in constraint '//whole(i)//', default 0 (linear)', count=6)
-         if (size(six) == 6) stage%strain_rows(:, i) = six
-      end do
-      do i = 1, ROWS
-         call k%numbers('stress_'//whole(i), six, -FACTOR, FACTOR, &
-                        'factors of the six stresses in constraint '//whole(i)//', default 0 (linear)', count=6)
-         if (size(six) == 6) stage%stress_rows(:, i) = six
-      end do
+      call declare_factors(k, 'strain', 'strains', stage%strain_rows)
+      call declare_factors(k, 'stress', 'stresses', stage%stress_rows)
       do i = 1, ROWS
          call k%number('change_'//whole(i), ends(BY_CHANGES + i - 1), -either(k, LARGEST), either(k, LARGEST), &
                        'change of the sum of constraint '//whole(i)//' over the stage, default 0 (linear)')
@@ -90,6 +82,21 @@ contains
       call k%number('suction_end', stage%suction_end, 0.0_wp, 1.0e6_wp, &
                     'suction at the end, reached in equal parts; default: suction is constant', unit=KPA)
    end subroutine declare_ends
+
+   !> Declares the factors of six components in each constraint.
+   subroutine declare_factors(k, name, components, factors)
+      type(key_table_t), intent(inout) :: k
+      character(*), intent(in) :: name, components   !< Beginning of the keys; components in words.
+      real(wp), intent(inout) :: factors(:, :)       !< They stay where a key is not given. (6, constraints)
+      real(wp), allocatable :: six(:)
+      integer :: i
+
+      do i = 1, size(factors, 2)
+         call k%numbers(name//'_'//whole(i), six, -FACTOR, FACTOR, 'factors of the six '//components// &
+                        ' in constraint '//whole(i)//', default 0 (linear)', count=6)
+         if (size(six) == 6) factors(:, i) = six
+      end do
+   end subroutine declare_factors
 
    !> Declares how a stage goes on: water and air, cycles, and steps.
    subroutine declare_course(k, stage)
