@@ -43,14 +43,12 @@ contains
       fewest_props = props_at('hysteresis') - 1
    end function fewest_props
 
-   !> True of a STATEV that has been initialised. A layout that is not finite is no past.
-   logical function has_past(statev)
-      real(c_double), intent(in) :: statev(:)
+   !> True of a STATEV that has been initialised, by its entry `layout`. One that is not finite is no past.
+   pure logical function has_past(layout)
+      real(c_double), intent(in) :: layout
 
-      associate (layout => statev(statev_at('layout')))
-         has_past = ieee_is_finite(layout)
-         if (has_past) has_past = abs(layout) > 0.0_c_double
-      end associate
+      has_past = ieee_is_finite(layout)
+      if (has_past) has_past = abs(layout) > 0.0_c_double
    end function has_past
 
    !> Prepares a material; the report says what is wrong with PROPS. material(:) of mud_prepared_size().

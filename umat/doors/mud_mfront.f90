@@ -246,7 +246,7 @@ contains
       real(wp) :: e, s_w, given
       logical :: past
 
-      past = has_past(point%state0)
+      past = has_past(point%state0(statev_at('layout')))
       if (.not. past) suction(1) = -point%gradient0(n + 1)
       suction(2) = -point%gradient1(n + 1)
       e = point%state0(statev_at('void_ratio'))

@@ -19,6 +19,7 @@ module mud_vumat
    !> The arrays of a block.
    type :: block_t
       integer :: n, n_shear
+      integer :: suction, layout   !< Numbers of these in STATEV: names are looked up once a block.
       type(mud_place) :: place
       real(c_double), pointer, contiguous :: props(:) => null(), density(:) => null(), strain(:, :) => null(), &
          stress0(:, :) => null(), stress1(:, :) => null(), state0(:, :) => null(), state1(:, :) => null(), &
@@ -95,6 +96,8 @@ contains
          return
       end if
       points%place = place_of('vumat_')
+      points%suction = statev_at('suction')
+      points%layout = statev_at('layout')
       points%n = integer_at(counts(1))
       points%n_shear = integer_at(counts(3))
       n_state = integer_at(counts(4))
@@ -152,9 +155,9 @@ contains
       real(wp), intent(in) :: state(:)
       real(wp), intent(out) :: suction0, suction   !< At the start and at the end.
 
-      suction0 = state(statev_at('suction'))
+      suction0 = state(points%suction)
       if (associated(points%field0)) then
-         if (.not. has_past(state)) suction0 = points%field0(k, 1)
+         if (.not. has_past(state(points%layout))) suction0 = points%field0(k, 1)
       end if
       suction = suction0
       if (associated(points%field1)) suction = points%field1(k, 1)
