@@ -11,7 +11,7 @@ module mud_one_point
    use mud_prepared, only: prepared_t, find_prepared
    use mud_refusals, only: place_t, place_at, remark_on_begun, remark_on_end, remark_on_props, remark_on_void_ratio, &
       save_if_asked
-   use mud_registry, only: S_SATURATION, S_SUCTION, S_VOID_RATIO
+   use mud_registry, only: NSTATV, S_SATURATION, S_SUCTION, S_VOID_RATIO
    use mud_retention, only: read_preset
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
@@ -149,10 +149,13 @@ contains
       logical, intent(in) :: in_pieces, goes_on   !< goes_on: false where the point only begins.
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
-      real(wp) :: stress(6), statev(size(start%statev)), from, change
+      real(wp), target :: room(NSTATV)
+      real(wp), pointer, contiguous :: statev(:)   ! of a length of its own it would be allocated at every point
+      real(wp) :: stress(6), from, change
 
       report = failed_report(mud_status_t())
       stress = start%stress
+      statev => room(:size(start%statev))
       statev = start%statev
       from = statev(S_SUCTION)
       if (never_began(statev)) then

@@ -44,6 +44,7 @@ contains
       type(block_t) :: points
       type(mud_report) :: report
       real(c_double) :: material(mud_prepared_size())
+      real(c_double), allocatable :: states(:, :)   ! of a point, before and after, so that none allocates its own
       real(c_double), pointer, contiguous :: first(:)
       integer :: k
       integer(c_int) :: code
@@ -64,8 +65,9 @@ contains
             if (c_associated(field_old)) call c_f_pointer(field_old, points%field0, [points%n, integer_at(nfieldv)])
             if (c_associated(field_new)) call c_f_pointer(field_new, points%field1, [points%n, integer_at(nfieldv)])
          end if
+         allocate (states(mud_prepared_statev(material), 2))
          do k = 1, points%n
-            call update_one(points, material, k, mud_prepared_statev(material), &
+            call update_one(points, material, k, states(:, 1), states(:, 2), &
                             max(real_at(step_time), real_at(total_time)) <= 0.0_wp)
          end do
       else
@@ -118,16 +120,18 @@ contains
    end subroutine find_block
 
    !> A point; one that is refused keeps its state and, where the user wants that, its stress.
-   subroutine update_one(points, material, k, n_state, elastic_only)
+   subroutine update_one(points, material, k, state0, state, elastic_only)
       type(block_t), intent(in) :: points
       real(c_double), intent(in) :: material(:)
-      integer, intent(in) :: k, n_state
+      integer, intent(in) :: k
+      real(c_double), intent(out), contiguous :: state0(:), state(:)   !< Room for the state before and after. (STATEV)
       logical, intent(in) :: elastic_only
       type(mud_report) :: report
       type(mud_blocks) :: blocks
-      real(wp) :: stress0(6), strain(6), state0(n_state), stress(6), state(n_state), suction0, suction, still(6)
-      integer(c_int) :: code
+      real(wp) :: stress0(6), strain(6), stress(6), suction0, suction, still(6)
+      integer(c_int) :: code, n_state
 
+      n_state = size(state0)
       stress0 = read_six(points%stress0(k, :))
       strain = read_six(points%strain(k, :))*ENGINEERING
       state0 = points%state0(k, :n_state)
