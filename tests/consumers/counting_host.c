@@ -74,6 +74,19 @@ int main(int argc, char **argv)
             printf("update scheme %d tangent %d suction %d: %ld done, %ld refused, allocations %ld\n", scheme, tangent,
                    !wet, done, failed, allocations - before);
          }
+   start(3, 1, 40.0);
+   for (int call = 0; call < 2; call++) {   /* the first may say what is doubtful, once a process */
+      before = allocations;
+      done = 0;
+      for (int k = 0; k < updates; k++) {
+         strain_of(k, dstrain);
+         if (mud_increment_at(NULL, material, stress, statev, nstatev, suction[0], dstrain, suction[0] + change,
+                              MUD_TANGENT_CONSISTENT + MUD_IN_PIECES, stress, statev, &blocks, &report)) continue;
+         done++;
+         suction[0] += change;
+      }
+   }
+   printf("in pieces: %ld done, allocations %ld\n", done, allocations - before);
    for (int threads = 1; threads <= 2; threads++)
       for (int n = POINTS/4; n <= POINTS; n += 3*POINTS/4) {
          start(1, 1, 40.0);

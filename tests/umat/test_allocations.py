@@ -28,10 +28,11 @@ def test_no_update_allocates():
 
     lines = [line for line in text.splitlines() if "allocations" in line]
     counts = {line.split(":")[0]: int(line.split()[-1]) for line in lines}
-    checks = [("24 variants of updates, 4 of batches and the control are counted", len(counts) == 29),
+    checks = [("24 variants of updates, one in pieces, 4 of batches and the control are counted", len(counts) == 30),
               ("the control's three allocations are seen", counts.get("control") == (0 if sanitized else 3)),
               ("every variant is updated and refuses one increment",
                sum(bool(re.search(r" [1-9]\d* done, 1 refused,", line)) for line in lines) == 24),
+              ("increments in pieces are done", bool(re.search(r"^in pieces: [1-9]\d* done,", text, re.MULTILINE))),
               ("no point of a batch fails", sum(": 0 failed," in line for line in lines) == 4)]
     if not sanitized:
         checks += [(f"{name}: no allocation, found {count}", count == 0) for name, count in counts.items()
