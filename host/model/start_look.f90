@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Warnings about the start of a scene and of its stages: balance, air, water outside, motions, plates, pulses that are
-!> over. What they tell is allowed, but usually a mistake.
+!> Warnings about the start of a scene and of its stages: balance, air, water outside, velocities, motions, plates,
+!> pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
    use generalised_alpha, only: has_rates, has_inertia
@@ -30,6 +30,7 @@ contains
       call look_at_balance(model, balance)
       call look_at_air(model)
       call look_at_water_outside(model)
+      call look_at_velocity(model)
       do i = 1, size(model%fixes)
          call look_at_motion(model, model%fixes(i))
       end do
@@ -105,6 +106,22 @@ contains
          if (abs(slope) > 0.0_wp) text = text//', '//key//'_slope = '//short(slope)
       end function meant_by
    end subroutine look_at_air
+
+   !> A velocity at the start where the first stage has no inertia and so ends at rest.
+   subroutine look_at_velocity(model)
+      type(model_t), intent(in) :: model
+      integer :: i
+
+      if (has_inertia(model%stages(1)%kind)) return
+      do i = 1, size(model%initials)
+         associate (one => model%initials(i))
+            if (.not. (abs(one%v_z) > 0.0_wp .or. abs(one%wave) > 0.0_wp)) cycle
+            call print_warning(place_of(one)//'the velocity of '''//trim(one%group_name)//''' has no effect: the '// &
+               'run begins with stage '//trim(model%stages(1)%name)//', which has no inertia and leaves it at rest.'// &
+               ' Begin with a dynamic stage, and give the stress of the start by stress of &initial.')
+         end associate
+      end do
+   end subroutine look_at_velocity
 
    !> Water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
    subroutine look_at_water_outside(model)

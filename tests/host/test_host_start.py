@@ -308,6 +308,32 @@ def test_a_motion_that_begins_with_a_velocity():
               == (int(words is not None), True), found)
 
 
+def test_a_velocity_that_the_first_stage_takes_away_is_told():
+    # A mass that falls, behind a stage that finds the balance of the weight: its velocity is gone when it falls.
+    text = """&scene name = 'fall' gravity = 9.81 /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'e' young = 1e4 poisson = 0.2 /
+&region material = 'e' void_ratio = 0 /
+&plate name = 'mass' r = 0, 0.5 z = 1.1 mass = 0.1 /
+&initial stress = 'geostatic' surface = 1 k_0 = 0.25 /
+&initial group = 'mass' {} /
+{}&stage name = 'drop' analysis = 'dynamic' duration = 0.01 dt = 1e-3 /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'mass' field = 'u_z' hold = 'yes' stages = 'rest' /
+"""
+    rest = "&stage name = 'rest' analysis = '{}' duration = 1 dt = 1 /\n"
+    told = lambda text: [line for line in lines_of("fall", text) if "the velocity of" in line]  # noqa: E731
+    for kind in ("static", "quasi_static"):
+        said = told(text.format("v_z = -2", rest.format(kind)))
+        check(f"behind a {kind} stage", len(said) == 1 and "fall.nml:7: the velocity of 'mass' has no effect" in said[0]
+              and "begins with stage rest" in said[0], said)
+    check("a wave as well", len(told(text.format("wave = 1 wave_number = 2", rest.format("static")))) == 1)
+    check("none is no doubt", not told(text.format("v_z = 0", rest.format("static"))))
+    check("one that the first stage keeps is no doubt",
+          not told(text.format("v_z = -2", rest.format("dynamic"))))
+
+
 def test_pulses_that_are_over_and_plates():
     text = """&scene name = 'lwd' gravity = 10 /
 &mesh r = 0, 0.2, 1 r_cells = 1, 1 z = -1, 0 z_cells = 2 /
