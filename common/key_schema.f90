@@ -10,7 +10,7 @@ module key_schema
    implicit none (type, external)
    private
    public :: key_t, REQUIRED, NONE, UNBOUNDED, LONGEST_WORD
-   public :: check_group, place_of, described, words_of
+   public :: check_group, refuse_idle_keys, idle_reason, place_of, described, words_of
    public :: given, line_of, texts_of, numbers_of, get_text, get_number
 
    character(*), parameter :: NONE = '', REQUIRED = '*'   !< Defaults of a key that may be left out, or must be given.
@@ -30,8 +30,8 @@ module key_schema
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< Number of values of a list, 0: any number.
       !> Conditions of its effect, between blanks: `key=word|word` another key has one of these words or none, `+key`
-      !> another key is given, `-key` it is not, `:p_w` the unknown exists, `:time` stages have time.
-      character(48) :: acts = ''
+      !> another key is given, `-key` it is not. Of a condition that begins with `:` the program knows whether it holds.
+      character(96) :: acts = ''
       character(16) :: refers = ''       !< Kind t: the group whose name it gives; 'material' stands for all laws.
    end type key_t
 contains
@@ -82,6 +82,76 @@ contains
          if (fault%code /= 0) return
       end do
    end subroutine check_entries
+
+   !> Refuses a key that has no effect because of another one. Fault EXIT_INPUT, at the first.
+   subroutine refuse_idle_keys(keys, group, fault)
+      type(key_t), intent(in) :: keys(:)     !< Every key of the group.
+      type(group_t), intent(in) :: group     !< It passed check_group.
+      type(fault_t), intent(inout) :: fault
+      character(:), allocatable :: why
+      integer :: i, k
+
+      do i = 1, group%count
+         k = place_of(keys, group%name, group%entries(i)%key)
+         if (k == 0) cycle
+         why = idle_reason(keys, keys(k), group)
+         if (why /= '') call raise(fault, EXIT_INPUT, at_line(group%file, group%entries(i)%line)// &
+                                   trim(keys(k)%name)//' has no effect'//why//'; remove it.')
+         if (fault%code /= 0) return
+      end do
+   end subroutine refuse_idle_keys
+
+   !> Why a key of a group has no effect beside the other keys, as the end of a sentence: " without cycle_by"; empty if
+   !> it has one. Conditions that begin with `:` are left to the program.
+   pure function idle_reason(keys, key, group) result(why)
+      type(key_t), intent(in) :: keys(:), key
+      type(group_t), intent(in) :: group
+      character(:), allocatable :: why
+      character(:), allocatable :: rest, condition, other, word
+      character(LENGTH) :: text
+      integer :: at
+
+      why = ''
+      rest = trim(key%acts)
+      do while (rest /= '' .and. why == '')
+         at = index(rest//' ', ' ')
+         condition = rest(:at - 1)
+         rest = adjustl(rest(at:))
+         other = condition(2:)
+         select case (condition(1:1))
+         case ('+')
+            if (.not. given(group, other)) why = ' without '//other
+         case ('-')
+            if (given(group, other)) why = ' beside '//other
+         case (':')
+         case default
+            at = index(condition, '=')
+            other = condition(:at - 1)
+            text = keys(place_of(keys, group%name, other))%preset   ! unless the group gives it
+            call get_text(group, other, text)
+            word = lower_case(trim(text))
+            if (word == '' .or. is_word(condition(at + 1:), word)) cycle
+            why = ' with '//other//' = '''//word//''''//own_keys(keys, group%name, other, word)
+         end select
+      end do
+   end function idle_reason
+
+   !> ", which takes eps_a_end, q_end": the keys that act with a word of another key and not with every one.
+   pure function own_keys(keys, group, other, word) result(list)
+      type(key_t), intent(in) :: keys(:)
+      character(*), intent(in) :: group, other, word
+      character(:), allocatable :: list
+      character(len(keys%acts)) :: words
+      integer :: k
+
+      list = ''
+      do k = 1, size(keys)
+         if (keys(k)%group /= group .or. index(keys(k)%acts, other//'=') /= 1) cycle
+         words = keys(k)%acts(len(other) + 2:)
+         if (is_word(words(:index(words, ' ') - 1), word)) list = list//', '//trim(keys(k)%name)
+      end do
+      if (list /= '') list = ', which takes'//list(2:)
+   end function own_keys
 
    subroutine check_values(file, item, key, fault)
       character(*), intent(in) :: file
@@ -229,7 +299,7 @@ contains
    end function numbers_of
 
    !> A text; `value` stays where the group has none.
-   subroutine get_text(group, name, value)
+   pure subroutine get_text(group, name, value)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
       character(LENGTH), intent(inout) :: value

@@ -5,7 +5,7 @@ module triax_case
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use texts, only: short, whole, LENGTH
    use namelists, only: group_t, read_groups, groups_of_text, set_entry
-   use key_schema, only: key_t, check_group, get_text, line_of, UNBOUNDED
+   use key_schema, only: key_t, check_group, refuse_idle_keys, place_of, get_text, line_of, UNBOUNDED
    use key_table, only: key_table_t, listing, reading
    use triax_control, only: CONTROL_TOLERANCE
    use triax_stage, only: test_stage_t
@@ -13,7 +13,8 @@ module triax_case
    use triax_stage_reader, only: read_stage
    use material_point, only: material_t
    use material_registry, only: new_material
-   use retention_groups, only: give_retention
+   use retention_curves, only: retention_t
+   use retention_groups, only: new_retention, give_retention
    use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, saturation, &
                           AXIAL, RADIAL
    implicit none (type, external)
@@ -44,6 +45,7 @@ module triax_case
    real(wp), parameter :: LEAST = 1.0e-6_wp, MOST = 5.0e4_wp
    real(wp), parameter :: ZERO = 0.0_wp, ONE = 1.0_wp
    character(*), parameter :: KPA = KILOPASCAL%name
+   character(*), parameter :: OF_AIR = ':air'   !< Condition of keys: a stage keeps the air.
    real(wp), parameter :: LIFTED = 1.0e-12_wp   !< Far above rounding: the library has raised the stress to p_min.
    real(wp), parameter :: ROUNDED = 1.0e-9_wp   !< Share of a stress by which a net stress may fall below zero.
 
@@ -163,7 +165,24 @@ contains
          call read_stage(table, test%stages(n_stages), fault)
          if (fault%code /= 0) return
       end do
+      if (.not. any(test%stages%keeps_air)) call refuse_keys_of_air(groups(of_initial), fault)
    end subroutine make_case
+
+   !> Refuses what describes air that is kept, in a test whose air is free.
+   subroutine refuse_keys_of_air(group, fault)
+      type(group_t), intent(in) :: group   !< &initial
+      type(fault_t), intent(inout) :: fault
+      type(key_t), allocatable :: keys(:)
+      integer :: i
+
+      allocate (keys, source=case_keys(KILOPASCAL))
+      do i = 1, group%count
+         associate (key => keys(place_of(keys, group%name, group%entries(i)%key)))
+            if (key%acts == OF_AIR) call raise(fault, EXIT_INPUT, at_line(group%file, group%entries(i)%line)// &
+               trim(key%name)//' has no effect where no stage has air = ''constant'': the air is free; remove it.')
+         end associate
+      end do
+   end subroutine refuse_keys_of_air
 
    !> The keys of a case but for those of materials and curves, with limits in a unit of stress.
    function case_keys(unit) result(keys)
@@ -232,12 +251,19 @@ contains
       type(case_t), intent(inout) :: test
       type(fault_t), intent(inout) :: fault
       class(material_t), allocatable :: law
+      type(key_table_t) :: table
+      class(retention_t), allocatable :: unused
       character(LENGTH) :: word
 
       word = 'mud'
       call get_text(group, 'law', word)
       call new_material(trim(word), group, law, test%material, fault)
-      if (fault%code == 0 .and. of_retention > 0) call give_retention(groups(of_retention), law, fault)
+      if (fault%code == 0 .and. of_retention > 0) then
+         call give_retention(groups(of_retention), law, fault)
+         table = listing('retention')
+         call new_retention(table, unused, fault)
+         if (fault%code == 0) call refuse_idle_keys(table%keys, groups(of_retention), fault)
+      end if
       if (fault%code == 0) call make_soil(law, test%soil)
    end subroutine read_material
 
@@ -282,11 +308,11 @@ contains
       call k%number('saturation', initial%s_w, 1.0e-6_wp, ONE, 'degree of saturation between the main curves, with '// &
                     'hysteresis = 1; default: on the main drying curve')
       call k%number('air_pressure', p_a, -100*ONE, 1.0e5_wp, &
-                    'air pressure above the atmosphere: back pressure; default 0', unit=KPA)
+                    'air pressure above the atmosphere: back pressure; default 0', OF_AIR, unit=KPA)
       call k%number('henry', soil%air%henry, ZERO, 0.5_wp, 'volume of air that a volume of water dissolves, with '// &
-                    'air = ''constant''; 0.02 at 20 C; default 0')
+                    'air = ''constant''; 0.02 at 20 C; default 0', OF_AIR)
       call k%number('k_w', soil%air%stiffness, ZERO, 1.0e9_wp, 'bulk modulus of the water, with '// &
-                    'air = ''constant''; 2.2e6 kPa; default 0: incompressible', unit=KPA)
+                    'air = ''constant''; 2.2e6 kPa; default 0: incompressible', OF_AIR, unit=KPA)
       call k%numbers('state_variables', initial%state, -UNBOUNDED, UNBOUNDED, &
                      'all state variables of the law in their order, with stress, instead of void_ratio')
       if (k%lists) return

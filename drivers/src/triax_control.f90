@@ -37,6 +37,7 @@ module triax_control
       real(wp) :: lead_start = 0.0_wp, lead_change = 0.0_wp
       real(wp) :: interval = 0.0_wp               !< Interval of the rows, in the unit of what leads.
       real(wp) :: strain_rows(6, ROWS) = 0.0_wp, stress_rows(6, ROWS) = 0.0_wp, changes(ROWS) = 0.0_wp
+      logical :: by_suction = .false.             !< The suction moves alone and makes the increments.
       logical :: effective = .false., keeps_water = .false., keeps_air = .false.
       type(closed_air_t) :: closed                !< Where the air is kept.
       real(wp) :: strain_start(6) = 0.0_wp, stress_start(6) = 0.0_wp, suction_start = 0.0_wp, water_start = 0.0_wp
@@ -111,6 +112,7 @@ contains
       ! Wetting under a constant load: what leads stays, or moves by less than a default increment, and suction decides.
       if (abs(plan%given_change(SUCTION)) > 0.0_wp .and. (abs(plan%lead_change) <= STAYS*stage%increment .or. &
           plan%increments <= stage%parts .and. .not. stage%given_increment)) then
+         plan%by_suction = .true.
          plan%lead_start = point%suction
          plan%lead_change = plan%given_change(SUCTION)
          plan%increments = max(plan%increments, &

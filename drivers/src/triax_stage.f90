@@ -9,8 +9,8 @@ module triax_stage
    use, intrinsic :: iso_fortran_env, only: wp => real64
    implicit none (type, external)
    private
-   public :: test_stage_t, quantity_t, set_constraints, quantity_rows, leads_of, keeps_volume, shear_control, &
-             general_control
+   public :: test_stage_t, quantity_t, set_constraints, quantity_rows, leads_of, controls_by, keeps_volume, &
+             shear_control, general_control
    public :: CONTROL_NAMES, QUANTITIES, STRAIN_PATH, STRESS_PATH, LINEAR, CONSTANT_NET_STRESS
    public :: BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    public :: PER_STRAIN, PER_PRESSURE, PER_SHARE, ROWS
@@ -63,6 +63,7 @@ module triax_stage
       real(wp) :: suction_increment = 0.0_wp, suction_interval = 0.0_wp   !< Where suction alone moves [stress].
       integer :: parts = 1                   !< Increments are divided into so many, for an accuracy.
       real(wp) :: interval = 0.0_wp          !< Between rows of the output, in the same unit.
+      logical :: given_interval = .false.    !< By hand.
       integer :: cycles = 0                  !< 0: one way
       integer :: cycle_by = 0                !< BY_*
       real(wp) :: amplitude = 0.0_wp, centre = 0.0_wp
@@ -106,6 +107,20 @@ contains
          leads = [BY_CHANGES]
       end select
    end function leads_of
+
+   !> 'control=drained|undrained', the controls that one of some quantities may lead: a condition of key_t.
+   pure function controls_by(quantities) result(condition)
+      integer, intent(in) :: quantities(:)   !< BY_*
+      character(:), allocatable :: condition
+      integer :: control, i
+
+      condition = ''
+      do control = 1, size(CONTROL_NAMES)
+         if (any([(any(leads_of(control) == quantities(i)), i=1, size(quantities))])) &
+            condition = condition//'|'//trim(CONTROL_NAMES(control))
+      end do
+      condition = 'control='//condition(2:)
+   end function controls_by
 
    !> True if the control holds the volume: a saturated sample then is undrained.
    pure logical function keeps_volume(control)

@@ -6,12 +6,12 @@ module triax_stage_reader
    use texts, only: lower_case, short, whole, LENGTH
    use namelists, only: group_t
    use spelling, only: nearest_name
-   use key_schema, only: get_text, line_of, given
+   use key_schema, only: get_text, line_of, given, refuse_idle_keys
    use key_table, only: key_table_t
    use stress_units, only: KILOPASCAL
-   use triax_stage, only: test_stage_t, set_constraints, leads_of, keeps_volume, CONTROL_NAMES, QUANTITIES, LINEAR, &
-                          BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, &
-                          BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
+   use triax_stage, only: test_stage_t, set_constraints, leads_of, controls_by, keeps_volume, CONTROL_NAMES, &
+                          QUANTITIES, LINEAR, BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, &
+                          BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    implicit none (type, external)
    private
    public :: read_stage
@@ -23,6 +23,7 @@ module triax_stage_reader
    real(wp), parameter :: MAX_INCREMENTS = 1.0e8_wp
    real(wp), parameter :: LARGEST = 1.0e7_wp   !< Stress in a stage [kPa].
    real(wp), parameter :: FACTOR = 1.0e6_wp    !< In a constraint, and for steps.
+   integer, parameter :: NORMAL = 3            !< Components up to this are normal ones.
    character(*), parameter :: KPA = KILOPASCAL%name
 contains
    !> A stage from its group, whose entries were checked. Fault EXIT_INPUT: a control or word is unknown, or keys are
@@ -39,6 +40,7 @@ contains
       if (k%lists) return
       stage%line = k%group%line
       call read_word(k%group, 'control', CONTROL_NAMES, stage%control, fault)
+      if (fault%code == 0) call refuse_idle_keys(k%keys, k%group, fault)
       if (fault%code == 0) call read_cycles(k, stage, fault)
       if (fault%code == 0) call read_lead(k, ends, stage, fault)
       if (fault%code == 0) call read_water(k, stage, fault)
@@ -58,26 +60,31 @@ contains
       call k%text('control', word, 'see the list of controls')
       call k%flag('stress', stage%effective, 'net|effective', 'effective', &
                   'stress that is prescribed, default net (total with air = ''constant''); the same without suction')
-      call k%number('eps_a_end', ends(BY_EPS_A), -1.0_wp, 1.0_wp, 'axial strain at the end, from the start of the test')
+      call k%number('eps_a_end', ends(BY_EPS_A), -1.0_wp, 1.0_wp, &
+                    'axial strain at the end, from the start of the test', controls_by([BY_EPS_A]))
       call k%number('eps_v_end', ends(BY_EPS_V), -1.0_wp, 1.0_wp, &
-                    'volumetric strain at the end, from the start of the test')
+                    'volumetric strain at the end, from the start of the test', controls_by([BY_EPS_V]))
       call k%number('gamma_end', ends(BY_GAMMA), -2.0_wp, 2.0_wp, &
-                    'engineering shear strain 13 at the end, from the start of the test')
-      call k%number('sigma_a_end', ends(BY_SIGMA_A), -LARGEST, LARGEST, 'axial stress at the end', unit=KPA)
-      call k%number('p_end', ends(BY_P), -LARGEST, LARGEST, 'mean stress at the end', unit=KPA)
-      call k%number('q_end', ends(BY_Q), -LARGEST, LARGEST, 'sigma_a - sigma_r at the end', unit=KPA)
-      call k%number('tau_end', ends(BY_TAU), -LARGEST, LARGEST, 'shear stress 13 at the end', unit=KPA)
+                    'engineering shear strain 13 at the end, from the start of the test', controls_by([BY_GAMMA]))
+      call k%number('sigma_a_end', ends(BY_SIGMA_A), -LARGEST, LARGEST, &
+                    'axial stress at the end', controls_by([BY_SIGMA_A]), unit=KPA)
+      call k%number('p_end', ends(BY_P), -LARGEST, LARGEST, 'mean stress at the end', controls_by([BY_P]), unit=KPA)
+      call k%number('q_end', ends(BY_Q), -LARGEST, LARGEST, &
+                    'sigma_a - sigma_r at the end', controls_by([BY_Q]), unit=KPA)
+      call k%number('tau_end', ends(BY_TAU), -LARGEST, LARGEST, &
+                    'shear stress 13 at the end', controls_by([BY_TAU]), unit=KPA)
       call k%numbers('d_eps', six, -1.0_wp, 1.0_wp, 'change of the strains 11, 22, 33, 12, 13, 23, shear as '// &
-                     'engineering strain (strain_path)', count=ROWS)
+                     'engineering strain (strain_path)', controls_by([BY_D_EPS]), count=ROWS)
       if (size(six) == ROWS) stage%changes = six
       call k%numbers('d_sigma', six, -LARGEST, LARGEST, 'change of the stresses 11, 22, 33, 12, 13, 23 (stress_path)', &
-                     unit=KPA, count=ROWS)
+                     controls_by([BY_D_SIGMA]), unit=KPA, count=ROWS)
       if (size(six) == ROWS) stage%changes = six
       call declare_factors(k, 'strain', 'strains', stage%strain_rows)
       call declare_factors(k, 'stress', 'stresses', stage%stress_rows)
       do i = 1, ROWS
          call k%number('change_'//whole(i), ends(BY_CHANGES + i - 1), -either(k, LARGEST), either(k, LARGEST), &
-                       'change of the sum of constraint '//whole(i)//' over the stage, default 0 (linear)')
+                       'change of the sum of constraint '//whole(i)//' over the stage, default 0 (linear)', &
+                       controls_by([BY_CHANGES]))
       end do
       call k%number('suction_end', stage%suction_end, 0.0_wp, 1.0e6_wp, &
                     'suction at the end, reached in equal parts; default: suction is constant', unit=KPA)
@@ -93,7 +100,8 @@ contains
 
       do i = 1, size(factors, 2)
          call k%numbers(name//'_'//whole(i), six, -FACTOR, FACTOR, 'factors of the six '//components// &
-                        ' in constraint '//whole(i)//', default 0 (linear)', count=6)
+                        ' in constraint '//whole(i)//', default 0 (linear)', controls_by([BY_CHANGES]), &
+                        count=6)
          if (size(six) == 6) factors(:, i) = six
       end do
    end subroutine declare_factors
@@ -112,16 +120,18 @@ contains
       call k%flag('air', stage%keeps_air, 'free|constant', 'constant', 'constant: the air keeps its mass and its '// &
                   'pressure changes, with water = ''constant''; default free')
       call k%text('cycle_by', word, &
-                  'eps_a or gamma (strain is reversed), q or tau (strain is driven until the stress is reached)')
+                  'eps_a or gamma (strain is reversed), q or tau (strain is driven until the stress is reached)', &
+                  controls_by([BY_EPS_A, BY_GAMMA]))
       call k%number('amplitude', stage%amplitude, -either(k, LARGEST), either(k, LARGEST), &
-                    'amplitude of the cycles, in the unit of cycle_by; negative: the first half cycle is backwards')
+                    'amplitude of the cycles, in the unit of cycle_by; negative: the first half cycle is backwards', &
+                    '+cycle_by')
       call k%number('centre', stage%centre, -either(k, LARGEST), either(k, LARGEST), &
-                    'centre of the cycles; default: the value where the stage begins')
-      call k%whole('cycles', stage%cycles, 1, 1000000, 'number of cycles')
+                    'centre of the cycles; default: the value where the stage begins', '+cycle_by')
+      call k%whole('cycles', stage%cycles, 1, 1000000, 'number of cycles', '+cycle_by')
       call k%number('stop_r_u', stage%stop_r_u, 1.0e-3_wp, 1.0_wp, &
                     'pore pressure ratio that ends the stage (undrained, simple_shear_constant_volume; saturated)')
       call k%number('stop_double_amplitude', stage%stop_double_amplitude, 1.0e-6_wp, 1.0_wp, &
-                    'strain eps_a or gamma between two reversals that ends the stage (cycles)')
+                    'strain eps_a or gamma between two reversals that ends the stage (cycles)', '+cycle_by')
       call k%number('increment', stage%increment, 1.0e-12_wp*min(1.0_wp, k%per_kpa), either(k, FACTOR), 'largest '// &
                     'step of the key that ends the stage: strain, default 1e-4; stress, 1 kPa; suction, 0.1 kPa; '// &
                     'linear, 1e-3 of 1')
@@ -160,11 +170,16 @@ contains
       stage%suction_increment = SUCTION_INCREMENT*k%per_kpa
       stage%suction_interval = SUCTION_INTERVAL*k%per_kpa
       stage%given_increment = k%given('increment')
+      stage%given_interval = k%given('output_interval')
       if (.not. stage%given_increment) stage%increment = increment
-      if (.not. k%given('output_interval')) stage%interval = interval
+      if (.not. stage%given_interval) stage%interval = interval
       if (is_stress .and. stage%given_increment) stage%suction_increment = stage%increment
-      if (is_stress .and. k%given('output_interval')) stage%suction_interval = stage%interval
-      if (k%given('stop_r_u') .and. .not. (keeps_volume(stage%control) .or. stage%keeps_air)) then
+      if (is_stress .and. stage%given_interval) stage%suction_interval = stage%interval
+      if (k%given('stress') .and. all(abs(sum(stage%stress_rows(:NORMAL, :), dim=1)) <= 0.0_wp)) then
+         call refuse(k%group, 'stress', 'has no effect in a stage that prescribes no mean stress, in which net and '// &
+                     'effective stress differ (here control '//name_of(stage%control)//', led by '// &
+                     trim(QUANTITIES(stage%lead)%key)//'); remove it.', fault)
+      else if (k%given('stop_r_u') .and. .not. (keeps_volume(stage%control) .or. stage%keeps_air)) then
          call refuse(k%group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &
                      ', in which no pore pressure builds up; remove it.', fault)
       else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. .not. is_stress) then
@@ -224,25 +239,12 @@ contains
       type(key_table_t), intent(in) :: k
       type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
-      character(*), parameter :: OF_CYCLES(4) = [character(21) :: 'cycles', 'amplitude', 'centre', &
-                                                 'stop_double_amplitude']
       integer, allocatable :: leads(:)
-      integer :: kind, i
+      integer :: kind
 
-      if (.not. k%given('cycle_by')) then
-         do i = 1, size(OF_CYCLES)
-            if (k%given(trim(OF_CYCLES(i)))) &
-               call refuse(k%group, OF_CYCLES(i), 'needs cycle_by: '//k%about('cycle_by')//'.', fault)
-         end do
-         return
-      end if
+      if (.not. k%given('cycle_by')) return
       allocate (leads(0))   ! or gfortran believes the assignment to read it
       leads = leads_of(stage%control)
-      if (.not. any(leads == BY_EPS_A .or. leads == BY_GAMMA)) then
-         call refuse(k%group, 'cycle_by', 'has no effect with control '//name_of(stage%control)// &
-                     '; cycles run in drained, undrained, constant_p and in simple shear.', fault)
-         return
-      end if
       call read_word(k%group, 'cycle_by', QUANTITIES(leads)%name, kind, fault)
       if (fault%code /= 0) return
       stage%cycle_by = leads(kind)
@@ -279,9 +281,6 @@ contains
             if (stage%cycles > 0) then
                call refuse(k%group, key, 'cannot be combined with cycles, which begin at the present state; remove '// &
                            'it.', fault)
-            else if (.not. any(leads == i)) then
-               call refuse(k%group, key, 'has no effect with control '//name_of(stage%control)// &
-                           ', which takes '//choice//'; remove it.', fault)
             else if (stage%lead > 0) then
                call refuse(k%group, key, 'cannot be combined with '//trim(QUANTITIES(stage%lead)%key)// &
                            ': one of them ends the stage; remove the other.', fault)

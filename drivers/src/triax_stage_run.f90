@@ -6,7 +6,7 @@ module triax_stage_run
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, EXIT_RUN
    use texts, only: short, whole
-   use triax_stage, only: test_stage_t, keeps_volume, shear_control, QUANTITIES
+   use triax_stage, only: test_stage_t, keeps_volume, shear_control, QUANTITIES, PER_PRESSURE
    use triax_control, only: plan_t, tally_t, plan_path, advance, lead, quantity
    use triax_point, only: soil_t, point_t, AXIAL, RADIAL
    implicit none (type, external)
@@ -40,7 +40,7 @@ module triax_stage_run
 
 contains
    !> Plans a stage from the present state of the sample. Fault EXIT_RUN: stop_r_u, or a constant water content, does
-   !> not fit the suction of the sample.
+   !> not fit the suction of the sample, or steps are given of what does not move.
    subroutine begin_stage(soil, stage, point, pressure, run, fault)
       type(soil_t), intent(in) :: soil
       type(test_stage_t), intent(in) :: stage
@@ -69,6 +69,12 @@ contains
          run%open = stage%cycle_by /= stage%lead
       end if
       call next_way(soil, stage, point, run)
+      if (run%plan%by_suction .and. QUANTITIES(stage%lead)%unit /= PER_PRESSURE .and. &
+          (stage%given_increment .or. stage%given_interval)) &
+         call raise(fault, EXIT_RUN, trim(merge('increment      ', 'output_interval', stage%given_increment))// &
+                    ' has no effect: what '//trim(QUANTITIES(stage%lead)%key)//' prescribes stays, or moves by '// &
+                    'less than an increment; the steps are those of the suction, '// &
+                    short(stage%suction_increment)//' '//trim(soil%law%unit%name)//'; remove it.')
    end subroutine begin_stage
 
    !> One increment; at its end the run of the stage says whether it calls for a row and whether the stage is over.

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Message about a step that failed although it was cut as often as allowed.
 module step_failure
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: wp
    use faults, only: fault_t, raise
    use texts, only: short, whole
@@ -8,7 +9,7 @@ module step_failure
    use element_equations, only: STRAIN_TOO_LARGE
    use model_types, only: model_t, term_box_t
    use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
-   use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
+   use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
    use run_state, only: run_t
    use unknown_fields, only: FIELD_NAMES
    use scene_parts, only: stage_t
@@ -19,7 +20,7 @@ module step_failure
    real(wp), parameter :: LEAST_OF_STAGE = 1.0e-12_wp   !< Share of the stage: shorter steps are a crawl.
 contains
    !> Raises the fault of a step that failed: exit code, place, cause and remedy. Fault EXIT_MATERIAL, EXIT_CONVERGENCE
-   !> (also of contacts), EXIT_FREE_BODY or EXIT_SOLVER, by log%outcome.
+   !> (also of contacts and of equations that are not finite), EXIT_FREE_BODY or EXIT_SOLVER, by log%outcome.
    subroutine explain_failure(model, stage, run, log, time, dt, fault)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
@@ -29,7 +30,7 @@ contains
       type(fault_t), intent(inout) :: fault
       character(600) :: text
       character(:), allocatable :: place, alone
-      integer :: e, node
+      integer :: e, i, node
 
       place = 'Stage '//trim(stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
       associate (m => model%domain)
@@ -64,6 +65,15 @@ contains
          case (SOLVER_FAILED)
             call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
                        whole(model%dofs%n)//' unknowns?')
+         case (EQUATIONS_LOST)
+            ! The first entry that is not finite, else the largest.
+            i = findloc(ieee_is_finite(run%assembly%values), .false., dim=1)
+            if (i == 0) i = maxloc(abs(run%assembly%values), dim=1)
+            node = model%dofs%node(count(run%pattern%row <= i))
+            call raise(fault, EXIT_CONVERGENCE, place//'the equations have numbers that are not finite or too '// &
+                       'large to be solved; the largest slope is '//short(run%assembly%values(i))//' at '// &
+                       place_of(model, node)//': look at the tangent of the material there, and at the loads'// &
+                       unstressed(run)//remarks(model, run%terms, time)//advice(stage, run))
          case default
             node = 1
             if (log%worst_unknown > 0) node = model%dofs%node(log%worst_unknown)

@@ -3,7 +3,7 @@
 module idle_keys
    use faults, only: at_line
    use generalised_alpha, only: has_rates
-   use key_schema, only: key_t, get_text, given, line_of, place_of
+   use key_schema, only: key_t, idle_reason, get_text, given, line_of, place_of
    use material_registry, only: is_law
    use namelists, only: group_t
    use scene_keys, only: keys_of_scenes
@@ -42,45 +42,18 @@ contains
       type(key_t), intent(in) :: keys(:), key
       type(scene_t), intent(in) :: scene
       type(group_t), intent(in) :: group
-      character(:), allocatable :: rest, condition, other, word
-      character(LENGTH) :: text
-      integer :: at
+      character(:), allocatable :: why
 
-      rest = trim(key%acts)
-      do while (rest /= '')
-         at = index(rest//' ', ' ')
-         condition = rest(:at - 1)
-         rest = adjustl(rest(at:))
-         other = condition(2:)
-         select case (condition(1:1))
-         case ('+')
-            if (.not. given(group, other)) call idle(' without '//other)
-         case ('-')
-            if (given(group, other)) call idle(' beside '//other)
-         case (':')
-            if (other == 'time') then
-               if (.not. any(has_rates(scene%stages%kind))) call idle(': every stage is static and has no time; '// &
-                  'analysis = ''quasi_static'' of &stage has')
-            else if (scene%fields < merge(WITH_P_W, WITH_P_C, other == 'p_w')) then
-               call idle(': the scene has no field '//other)
-            end if
-         case default
-            at = index(condition, '=')
-            other = condition(:at - 1)
-            text = keys(place_of(keys, group%name, other))%preset   ! unless the group gives it
-            call get_text(group, other, text)
-            word = lower_case(trim(text))
-            if (word == '' .or. index('|'//condition(at + 1:)//'|', '|'//word//'|') > 0) cycle
-            call idle(' with '//other//' = '''//word//'''')
-         end select
-      end do
-   contains
-      subroutine idle(why)
-         character(*), intent(in) :: why
-
-         call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'//trim(group%name)// &
-                          ' has no effect'//why//'.')
-      end subroutine idle
+      why = idle_reason(keys, key, group)
+      if (index(key%acts, ':time') > 0 .and. .not. any(has_rates(scene%stages%kind))) then
+         why = ': every stage is static and has no time; analysis = ''quasi_static'' of &stage has'
+      else if (index(key%acts, ':p_w') > 0 .and. scene%fields < WITH_P_W) then
+         why = ': the scene has no field p_w'
+      else if (index(key%acts, ':p_c') > 0 .and. scene%fields < WITH_P_C) then
+         why = ': the scene has no field p_c'
+      end if
+      if (why /= '') call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'// &
+                                        trim(group%name)//' has no effect'//why//'.')
    end subroutine judge
 
    !> Definitions, of a kind that keys refer to, that no key of the scene names.

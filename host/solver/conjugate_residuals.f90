@@ -6,23 +6,24 @@
 module conjugate_residuals
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: wp
-   use sparse_factors, only: sparse_t, backsolve, times, SOLVED, FAILED
+   use sparse_factors, only: sparse_t, backsolve, times, SOLVED
    implicit none (type, external)
    private
-   public :: solve_by_factors, INACCURATE
+   public :: solve_by_factors, INACCURATE, NOT_FINITE
 
    integer, parameter :: INACCURATE = 3       !< The steps allowed did not reach the target.
+   integer, parameter :: NOT_FINITE = 4       !< Numbers of the equations are not, or overflow.
    real(wp), parameter :: ROUNDING = 1.0e-14_wp   !< Share of the right side that no step gets below.
 contains
    !> x with |W (b - A x)| <= target, W = diag(weight), in at most `most` steps. After INACCURATE x is the best found;
-   !> after FAILED it is of no use. Eisenstat, Elman, Schultz (1983): docs/theory/host.md section 6.
+   !> after another it is of no use. Eisenstat, Elman, Schultz (1983): docs/theory/host.md section 6.
    subroutine solve_by_factors(sparse, values, b, weight, target, most, x, steps, status)
       type(sparse_t), intent(inout) :: sparse
       real(wp), intent(in) :: values(:), b(:), weight(:)   !< (entries) of A; (n); (n), > 0.
       real(wp), intent(in) :: target
       integer, intent(in) :: most
       real(wp), intent(out) :: x(:)   !< (n)
-      integer, intent(out) :: steps, status   !< Steps taken; SOLVED, INACCURATE or FAILED.
+      integer, intent(out) :: steps, status   !< Steps taken; SOLVED, INACCURATE, NOT_FINITE or as of backsolve.
       real(wp) :: z(size(b), most), w(size(b), most), r(size(b)), share, enough, left
       integer :: j
 
@@ -31,7 +32,7 @@ contains
       left = norm2(r)
       enough = max(target, ROUNDING*left)
       steps = 0
-      status = merge(SOLVED, FAILED, ieee_is_finite(left))
+      status = merge(SOLVED, NOT_FINITE, ieee_is_finite(left))
       if (status /= SOLVED) return
       do while (left > enough .and. steps < most)
          steps = steps + 1
@@ -47,7 +48,7 @@ contains
             end do
             share = norm2(w(:, k))
             if (.not. (ieee_is_finite(share) .and. share > 0.0_wp)) then
-               status = FAILED
+               status = NOT_FINITE
                return
             end if
             w(:, k) = w(:, k)/share

@@ -47,7 +47,7 @@ module linear_system
 contains
    !> Solution to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
    !> nothing has been fixed, released or come into contact, otherwise by new ones. docs/theory/host.md section 6.
-   !> status: SOLVED; SINGULAR or FAILED as of factorise; FAILED where numbers are not finite. system%indefinite is
+   !> status: SOLVED; SINGULAR or FAILED as of factorise; NOT_FINITE as of solve_by_factors. system%indefinite is
    !> known only of a matrix that was factorised.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs

@@ -4,7 +4,7 @@
 module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
-   use conjugate_residuals, only: solve_by_factors, INACCURATE
+   use conjugate_residuals, only: solve_by_factors, INACCURATE, NOT_FINITE
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
                           rounding_in, water_of, BY_FORCES, BY_CHANGE
    use linear_forces, only: add_linear_forces
@@ -26,10 +26,11 @@ module newton_step
    implicit none (type, external)
    private
    public :: take_step, start_accelerations, unbalanced_forces
-   public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED
+   public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, &
+             EQUATIONS_LOST
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
-                         CONTACT_FAILED = 5
+                         CONTACT_FAILED = 5, EQUATIONS_LOST = 6
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Share of all contributions: no residual to begin with is smaller.
    real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp    !< Share of an error to which the stresses of the next pass are
                                                       !< integrated.
@@ -54,7 +55,7 @@ contains
    !> Solves a step from solution%state to solution%next over scheme%dt; the latter is of use only after CONVERGED.
    !> docs/theory/host.md section 5. log%outcome says how it ends: CONVERGED; NOT_CONVERGED after max_iterations or
    !> beyond an error of 1e10; MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see assembly,
-   !> contacts); BODY_FREE with a singular matrix; SOLVER_FAILED.
+   !> contacts); BODY_FREE with a singular matrix; EQUATIONS_LOST where they are not finite; SOLVER_FAILED.
    subroutine take_step(domain, dofs, scheme, control, solution, log)
       type(domain_t), intent(inout) :: domain   !< The tolerance of its laws changes, see stress_tolerance.
       type(dofs_t), intent(in) :: dofs
@@ -102,7 +103,7 @@ contains
             end if
          end associate
          if (status /= SOLVED) then
-            log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
+            log%outcome = outcome_of(status)
             return
          end if
          call correct(dofs, scheme, solution, at, log)
@@ -302,6 +303,15 @@ contains
       at%with_slopes = .false.
    end subroutine correct
 
+   !> Outcome of a step whose equations were not solved.
+   pure integer function outcome_of(status)
+      integer, intent(in) :: status   !< As solve_step gives it.
+
+      outcome_of = SOLVER_FAILED
+      if (status == SINGULAR) outcome_of = BODY_FREE
+      if (status == NOT_FINITE) outcome_of = EQUATIONS_LOST
+   end function outcome_of
+
    !> Whether the matrix is to be made once more, with a stiffness for points that have none: for the open ones where it
    !> is singular or indefinite, for all where it stays singular; `fallback` is then of the next level.
    !> docs/theory/host.md section 5.3.
@@ -481,7 +491,7 @@ contains
                                                      MOST_STEPS, dx, steps, status)
          if (status == INACCURATE) status = SOLVED
          if (status /= SOLVED) then
-            log%outcome = merge(BODY_FREE, SOLVER_FAILED, status == SINGULAR)
+            log%outcome = outcome_of(status)
             return
          end if
          do i = 1, size(state%a, 2)

@@ -63,7 +63,7 @@ CASES = [
 MISTAKES = {
     "control = 'undrained', q_endd = 3": ["q_endd", "q_end", ":9:"],
     "control = 'undrained', eps_a_end = 0.1, q_end = 3": ["q_end", "eps_a_end"],
-    "control = 'constant_q', eps_a_end = 0.1": ["eps_a_end", "p_end or eps_v_end"],
+    "control = 'constant_q', eps_a_end = 0.1": ["eps_a_end", "which takes eps_v_end, p_end;"],
     "control = 'undrained', cycle_by = 'p', amplitude = 1, cycles = 2": ["cycle_by", "eps_a, q"],
     "control = 'undrained', cycle_by = 'q', amplitude = 1": ["cycles"],
     "control = 'undrained', cycle_by = 'q', amplitude = 1, cycles = 2.5": ["2.5", "integer"],
@@ -76,6 +76,38 @@ MISTAKES = {
     "control = 'drained', air = 'constant', eps_a_end = 0.1": ["air", "water = 'constant'", "dissolved"],
     "control = 'stress_path', d_sigma = 0,0,0,0,0,0": ["d_sigma"],
 }
+
+
+# Keys that are written for something else: the key, and why it has no effect.
+UNSATURATED = "p_eff = 90, void_ratio = 0.81, suction = 6"
+IDLE = {
+    "drained, eps_a_end = 0.01, change_2 = 0.03": "change_2 has no effect with control = 'drained', which takes eps_a",
+    "k0, p_end = 120, strain_1 = 1, 0, 0, 0, 0, 0": "strain_1 has no effect with control = 'k0'",
+    "strain_path, d_eps = 0, 0, 0.01, 0, 0, 0, stress_6 = 0, 0, 0, 0, 0, 2": "stress_6 has no effect",
+    "linear, d_eps = 0, 0, 0.01, 0, 0, 0": "d_eps has no effect with control = 'linear', which takes strain_1,",
+    "isotropic, p_end = 120, cycle_by = 'q'": "cycle_by has no effect with control = 'isotropic'",
+    "drained, eps_a_end = 0.01, centre = 2": "centre has no effect without cycle_by",
+    "undrained, eps_a_end = 0.01, stress = 'effective'": "stress has no effect in a stage that prescribes no mean",
+    "k0, eps_v_end = 0, suction_end = 3, increment = 1e-4": "increment has no effect: what eps_v_end prescribes stays",
+    "k0, eps_v_end = 0, suction_end = 3, output_interval = 1e-4": "output_interval has no effect: what eps_v_end",
+}
+
+
+def test_a_key_without_effect_is_refused():
+    for stage, words in IDLE.items():
+        control, _, rest = stage.partition(", ")
+        done = call(f"control = '{control}', {rest}", initial=UNSATURATED)
+        check(f"refused: {stage}", done.returncode in (2, 3) and words in done.stderr, done.stderr)
+    for key in ("air_pressure = 30", "henry = 0.01", "k_w = 2e6"):
+        done = call("control = 'drained', water = 'constant', eps_a_end = 1e-3", initial=f"{UNSATURATED}, {key}")
+        check(f"refused where the air is free: {key}", done.returncode == 2 and f"{key.split()[0]} has no effect where "
+              "no stage has air = 'constant'" in done.stderr, done.stderr)
+    case = ("&material law = 'elastic' young = 3e4 poisson = 0.2 /\n&retention law = 'power' a = 0.01 m = 2 /\n"
+            "&initial p_eff = 60 void_ratio = 0.7 suction = 2 /\n&stage control = 'drained' eps_a_end = 1e-3 /\n")
+    (work / "elastic.nml").write_text(case)
+    done = subprocess.run([triax, work / "elastic.nml", "--quiet"], capture_output=True, text=True, cwd=work)
+    check("a key of another retention curve is refused", done.returncode == 2
+          and "m has no effect with law = 'power', which takes s_min, a, b; remove it." in done.stderr, done.stderr)
 
 
 def test_what_is_held():

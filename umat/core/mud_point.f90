@@ -19,6 +19,7 @@ module mud_point
    use mud_status, only: fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, end_substep, end_phase
+   use mud_tensor, only: is_finite
    use mud_transitions, only: begin_substep
    implicit none (type, external)
    private
@@ -74,15 +75,27 @@ contains
          if (follows) call follow_turn(course%with_increment, sens)
       end do
       call end_update(par, course, it, blocks)
+      if (tangent == TANGENT_NONE) return
+      call elastic_blocks(par, it%state, blocks)
+      if (follows) follows = is_slope(sens%y(1:7, 1:6), maxval(abs(blocks%dsig_deps)))
       if (follows) then
          blocks%dsig_deps = transpose(sens%y(1:6, 1:6))
          blocks%dsig_dpc = sens%y(7, 1:6)
-      else if (tangent == TANGENT_CONTINUUM .and. n > 0) then
+      else if (tangent >= TANGENT_CONTINUUM .and. n > 0) then
          call continuum_blocks(par, it%inc, it%trial, it%state, blocks)
-      else if (tangent /= TANGENT_NONE) then
-         call elastic_blocks(par, it%state, blocks)
       end if
    end subroutine update_point
+
+   !> Whether derivatives of the stress are slopes: those of explicit substeps at the limit of their stability grow from
+   !> one to the next, up to 1e108 kPa, while error control keeps the stress. docs/theory/integration.md section 5.3.
+   pure logical function is_slope(y, stiffness)
+      real(wp), intent(in) :: y(:, :)     !< By strain [kPa] and, last, by suction [-]. (directions, stresses)
+      real(wp), intent(in) :: stiffness   !< Largest elastic one [kPa].
+      real(wp), parameter :: STEEPEST = 1.0e4_wp   !< The stress of an increment changes the stiffness by less.
+
+      is_slope = all(is_finite(y))
+      if (is_slope) is_slope = maxval(abs(y(:6, :))) <= STEEPEST*stiffness .and. maxval(abs(y(7, :))) <= STEEPEST
+   end function is_slope
 
    !> Checks the increment, and lifts a stress below its limit; nothing is integrated yet.
    pure subroutine begin_update(par, d_strain, d_pc, it, course)
