@@ -51,7 +51,7 @@ module triax_control
       integer :: updates = 0                 !< Calls of the library.
       integer :: max_updates = huge(0)       !< The test stops after so many.
       integer :: increments = 0              !< Number of increments of all stages.
-      integer :: reversals = 0               !< Number of reversals of cycles whose volume is free.
+      integer :: reversals = 0               !< Most turns of an effective stress while the volume is free.
       integer :: solved = 0                  !< Increments that needed a solution.
       integer :: cuts = 0                    !< Increments cut and retried.
       real(wp) :: tolerance = CONTROL_TOLERANCE   !< Tolerance of what is held, relative.

@@ -13,9 +13,14 @@ module triax_run
    use triax_point, only: point_t
    use triax_progress, only: timer_t, progress_is_due, show_progress
    use triax_stage, only: CONTROL_NAMES, keeps_volume
+   use turns, only: follow
    implicit none (type, external)
    private
    public :: run_test
+
+   !> An effective stress turns where it comes back by this share of the largest one: controls hold stresses far better,
+   !> and what is less leaves nothing behind [-].
+   real(wp), parameter :: LEAST_SWING = 1.0e-3_wp
 contains
    !> Runs a test from its start to its end, or to where it stops: rows so far are kept, and the table is closed.
    !> Faults: those of begin_stage, next_increment and of the table, with test and stage before their text.
@@ -29,12 +34,15 @@ contains
       type(moments_t), intent(inout), optional :: moments   !< Every increment, for comparisons.
       type(stage_run_t) :: run
       type(fault_t) :: ending
-      real(wp) :: pressure, share
-      integer :: i, way, k
+      real(wp) :: pressure, share, farthest(6)
+      integer :: i, way, k, sense(6), turned(6)
 
       tally%tolerance = test%control_tolerance
       tally%max_updates = test%max_updates
       point = test%start
+      farthest = point%stress
+      sense = 0
+      turned = 0
       pressure = 0.0_wp
       call write_row(table, test%soil, point, run, 0.0_wp, 0, fault)
       stages: do i = 1, size(test%stages)
@@ -49,8 +57,12 @@ contains
                call next_increment(test%soil, stage, run, point, tally, fault)
                if (fault%code /= 0) exit stages
                tally%increments = tally%increments + 1
-               if (run%way /= way .and. .not. (run%finished .or. keeps_volume(stage%control))) &
-                  tally%reversals = tally%reversals + 1
+               if (keeps_volume(stage%control)) then
+                  farthest = point%stress
+               else
+                  call follow(point%stress, LEAST_SWING*maxval(abs(point%stress)), farthest, sense, turned)
+               end if
+               tally%reversals = maxval(turned)
                if (present(moments)) call note_moment(moments, [i, way, k], run%finished .or. run%way /= way, &
                                                       values_of(test%soil, point, run, 0.0_wp, i))
                if (run%row) then

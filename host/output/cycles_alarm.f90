@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Warning of a run whose load turns many times on ground that accumulates more strain in cycles than tests do.
+!> Warning of a run in which the load or the ground turns many times, on ground that accumulates more strain in cycles
+!> than tests do.
 !> docs/theory/host.md section 17.
 module cycles_alarm
    use archive, only: archive_t
@@ -11,17 +12,25 @@ module cycles_alarm
    use run_state, only: run_t
    use scene_parts, only: amplitude_at, acts_in
    use texts, only: short, whole
+   use turns, only: follow
+   use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning
    implicit none (type, external)
    private
    public :: cycles_alarm_t
 
    real(wp), parameter :: LEAST_SWING = 0.1_wp   !< A history turns where it comes back by this share of its range [-].
+   !> A displacement turns where it comes back by this share of the largest of the ground. A free vibration that loses
+   !> a fifth with every period does so twenty times at most: docs/theory/host.md section 17 [-].
+   real(wp), parameter :: LEAST_SHARE = 0.25_wp
 
    type, extends(observer_t) :: cycles_alarm_t
-      real(wp), allocatable :: farthest(:)   !< (histories) Factor that each came to since it turned last [-].
-      integer, allocatable :: sense(:)       !< (histories) Way that it goes, 1 or -1; 0: it has not moved.
-      integer, allocatable :: turns(:)       !< (histories)
+      !> (histories, then displacements u_r, u_z of the nodes) What each came to since it turned last [-, m].
+      real(wp), allocatable :: farthest(:)
+      integer, allocatable :: sense(:)       !< Way that each goes, 1 or -1; 0: it has not moved.
+      integer, allocatable :: turns(:)       !< Number of turns; see follow_ground for displacements.
+      real(wp), allocatable :: largest(:)    !< (1) Of the displacements when their turns began to count [m].
+      logical, allocatable :: counts(:)      !< (nodes) On ground whose strain of many cycles is too large.
       logical :: told = .false.
    contains
       procedure :: exchange
@@ -35,13 +44,14 @@ contains
       class(archive_t), intent(inout) :: archive
 
       call archive%enter('cycles')
-      call archive%exchange_allocatable('farthest', self%farthest, '1', 'factors that histories came to')
+      call archive%exchange_allocatable('farthest', self%farthest, '1', 'what came how far')
       call archive%exchange_allocatable('sense', self%sense, '1', 'ways that they go')
       call archive%exchange_allocatable('turns', self%turns, '1', 'turns so far')
+      call archive%exchange_allocatable('largest', self%largest, 'm', 'largest displacement that was doubled last')
       call archive%leave('cycles')
    end subroutine exchange
 
-   !> Makes room for the histories, which start where the run does.
+   !> Makes room for the histories and the displacements, which start where the run does.
    subroutine begins(self, model, run, news, fault)
       class(cycles_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -50,12 +60,21 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
+      associate (nodes => model%domain%mesh%t6, of => model%domain%region_of)
+         allocate (self%counts(size(run%state%x, 2)), source=.false.)
+         do i = 1, size(of)
+            if (model%domain%regions(of(i))%law%overcounts_cycles) self%counts(nodes(:, i)) = .true.
+         end do
+      end associate
       if (run%steps > 0) return
-      self%farthest = [(amplitude_at(model%amplitudes(i), run%state%time), i=1, size(model%amplitudes))]
+      self%farthest = [(amplitude_at(model%amplitudes(i), run%state%time), i=1, size(model%amplitudes)), &
+                       run%state%x(:DISPLACEMENTS, :)]
       allocate (self%sense(size(self%farthest)), self%turns(size(self%farthest)), source=0)
+      self%largest = [0.0_wp]
    end subroutine begins
 
-   !> Counts the turns of the histories that act in the stage, and tells when one has many, once, on standard error.
+   !> Counts the turns of the histories that act in the stage and of the displacements of the ground, and tells when one
+   !> has many, once, on standard error.
    subroutine step(self, model, run, news, fault)
       class(cycles_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
@@ -63,9 +82,10 @@ contains
       type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp) :: factor, least
-      integer :: i
+      integer :: i, n, at
 
-      do i = 1, size(self%turns)
+      n = size(model%amplitudes)
+      do i = 1, n
          factor = amplitude_at(model%amplitudes(i), run%next%time)
          if (.not. acts(model, i, model%stages(news%stage)%name)) then
             self%farthest(i) = factor
@@ -76,30 +96,51 @@ contains
             least = LEAST_SWING*(maxval(values) - minval(values))
          end associate
          call follow(factor, least, self%farthest(i), self%sense(i), self%turns(i))
-         if (self%told .or. self%turns(i) <= MANY_REVERSALS .or. .not. any_counts(model)) cycle
-         self%told = .true.
-         call print_warning('stage '//trim(model%stages(news%stage)%name)//', time '//short(run%next%time)// &
-            ' s: history '''//trim(model%amplitudes(i)%name)//''' has turned '//whole(self%turns(i))//' times: '// &
-            CYCLES_UNTRUSTED)
       end do
+      if (.not. any(self%counts)) return
+      call follow_ground(self, run%next%x(:DISPLACEMENTS, :), n)
+      if (self%told .or. maxval(self%turns) <= MANY_REVERSALS) return
+      self%told = .true.
+      at = maxloc(self%turns, 1)
+      call print_warning('stage '//trim(model%stages(news%stage)%name)//', time '//short(run%next%time)//' s: '// &
+                         what_turned()//' has turned '//whole(self%turns(at))//' times: '//CYCLES_UNTRUSTED)
+   contains
+      function what_turned() result(text)
+         character(:), allocatable :: text
+
+         if (at <= n) then
+            text = 'history '''//trim(model%amplitudes(at)%name)//''''
+         else
+            associate (x => model%domain%mesh%x(:, (at - n + 1)/2))
+               text = 'the ground at ('//short(x(1))//', '//short(x(2))//') m'
+            end associate
+         end if
+      end function what_turned
    end subroutine step
 
-   !> A turn is one where a factor has come back by the least swing from the farthest that it came.
-   pure subroutine follow(factor, least, farthest, sense, turns)
-      real(wp), intent(in) :: factor, least
-      real(wp), intent(inout) :: farthest
-      integer, intent(inout) :: sense, turns
+   !> Counts the turns of displacements. When the largest one has doubled, turns before it are small and count no more.
+   subroutine follow_ground(self, u, n)
+      class(cycles_alarm_t), intent(inout) :: self
+      real(wp), intent(in) :: u(:, :)   !< (2, nodes) [m]
+      integer, intent(in) :: n          !< Histories before them.
+      real(wp) :: largest
+      integer :: i, k
 
-      if (sense == 0) then
-         if (abs(factor - farthest) <= least) return
-         sense = merge(1, -1, factor > farthest)
-      else if (sense*(factor - farthest) < 0.0_wp) then
-         if (abs(factor - farthest) <= least) return
-         sense = -sense
-         turns = turns + 1
+      largest = maxval(maxval(abs(u), 1), mask=self%counts)
+      if (largest > 2.0_wp*self%largest(1)) then
+         self%largest = largest
+         self%turns(n + 1:) = 0
       end if
-      farthest = factor
-   end subroutine follow
+      do i = 1, size(u, 2)
+         if (.not. self%counts(i)) cycle
+         do k = 1, size(u, 1)
+            associate (at => n + size(u, 1)*(i - 1) + k)
+               call follow(u(k, i), LEAST_SHARE*max(largest, self%largest(1)), self%farthest(at), self%sense(at), &
+                           self%turns(at))
+            end associate
+         end do
+      end do
+   end subroutine follow_ground
 
    !> Whether a history acts in a stage; one that no action names, as that of gravity or of a wave, does in all.
    pure logical function acts(model, amplitude, stage)
@@ -113,15 +154,4 @@ contains
          if (model%actions(i)%amplitude == amplitude) acts = acts .or. acts_in(model%actions(i)%stages, stage)
       end do
    end function acts
-
-   !> Whether there is ground whose strain of many cycles is too large.
-   pure logical function any_counts(model)
-      type(model_t), intent(in) :: model
-      integer :: i
-
-      any_counts = .false.
-      do i = 1, size(model%domain%regions)
-         any_counts = any_counts .or. model%domain%regions(i)%law%overcounts_cycles
-      end do
-   end function any_counts
 end module cycles_alarm

@@ -237,6 +237,18 @@ def test_cycles_beyond_the_tenth_are_told_not_to_be_trusted():
         check(f"{cycles} {control} cycles", warned.count("settlement that cycles accumulate") == told, warned)
 
 
+def test_turns_are_counted_over_stages():
+    # Every half cycle is a stage of its own: 22 ways turn 21 times. Ways of 2e-7 move the stress by less than 0.1 kPa.
+    def told(size, ways, control="drained"):
+        stages = [f"control = '{control}', eps_a_end = {size*(-1)**i:g}, increment = {size/4:g}" for i in range(ways)]
+        return call(*stages, initial="p_eff = 140, void_ratio = 0.78").stderr.count("the load has turned 21 times")
+
+    check("22 ways turn 21 times", told(2e-4, 22) == 1)
+    check("21 ways turn 20 times", told(2e-4, 21) == 0)
+    check("at constant volume nothing settles", told(2e-4, 22, "undrained") == 0)
+    check("nor in tiny ways", told(2e-7, 22) == 0)
+
+
 def test_a_way_of_no_length_is_passed_over():
     # The first turn is where the sample stands: the cycles begin with the way to the other turn.
     rows, _ = run("control = 'drained', cycle_by = 'eps_a', amplitude = 4e-4, centre = -4e-4, cycles = 2, "

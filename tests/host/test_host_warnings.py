@@ -349,6 +349,33 @@ def test_a_load_that_turns_more_than_twenty_times_is_told_once():
     check("nor a load that ripples", told_of_cycles(ripples) == [])
 
 
+SWINGING = f"""&scene name = 'free' fields = 'u' gravity = 9.81 /
+&mesh r = 0, 1 r_cells = 1 z = -1.8, 0 z_cells = 2 /
+&mud name = 'sand' file = '{root}/drivers/materials/toyoura.nml' /
+&elastic name = 'rock' young = 9e4 poisson = 0.2 /
+&region material = 'sand' void_ratio = 0.8 rho_s = 2.65 /
+&initial stress = 'geostatic' surface = 0 surcharge = 25 /
+&plate name = 'block' group = 'top' mass = 8 force = -78.54 /
+&stage name = 'rest' analysis = 'static' duration = 1 zero_displacements = 'yes' /
+&stage name = 'free' analysis = 'dynamic' duration = 2.4 dt = 0.005 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 5 stages = 'free' /
+"""
+
+
+def test_ground_that_swings_more_than_twenty_times_is_told_once():
+    # The block swings freely, with no history and about 11 periods a second.
+    told = told_of_cycles(SWINGING)
+    check("a free vibration is told once", len(told) == 1 and " m has turned 21 times" in told[0] and
+          "the ground at (" in told[0], told)
+    check("a short one is not", told_of_cycles(SWINGING.replace("duration = 2.4", "duration = 0.6")) == [])
+    # With 5 % of damping swings have fallen below a quarter of the largest displacement after ten.
+    check("nor one that dies away", told_of_cycles(SWINGING.replace("rho_s = 2.65", "rho_s = 2.65 damping = 30")) == [])
+    check("nor elastic ground", told_of_cycles(SWINGING.replace("material = 'sand'", "material = 'rock'")) == [])
+
+
 def test_turns_are_counted_over_a_restart():
     text = PULSES.format(repeats=11).replace("gravity = 9.81", "gravity = 9.81 checkpoint_steps = 21")
     start("turns", text)
