@@ -300,9 +300,9 @@ contains
 
       e = void_ratio_at(inc, time)
       call changes_along(inc, mode, time, e, dt, driving, changes)
-      call linearise_stage(par, inc, w, point, time, e, changes%loading, lin)
       rests = at_rest
       if (at_rest) rests = are_zero(changes)
+      call linearise_stage(par, inc, w, point, time, e, changes%loading, rests, lin)
       call changes_of_rate(par, w, lin, rests, y, r_in, driving%d_strain, driving%from_centre, &
                            changes, stress_only, rates)
       if (.not. stress_only) call add_volume_changes(par, inc%d_v, point, y, driving%d_v, rates)
@@ -318,15 +318,16 @@ contains
    !> Prepares the derivative of the rate w of a stage, at a point of the integrated vector, a pseudo-time and a void
    !> ratio. point has sigma' [kPa], z and plastic shear [-]; time is a share of inc, e the void ratio [-].
    !> docs/theory/integration.md section 5.3.
-   pure subroutine linearise_stage(par, inc, w, point, time, e, loading, lin)
+   pure subroutine linearise_stage(par, inc, w, point, time, e, loading, at_rest, lin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: point(NY), time, e
       type(loading_t), intent(in) :: loading   !< loading part of the strain rate there
+      logical, intent(in) :: at_rest
       type(linearised_t), intent(inout) :: lin
 
-      call linearise(par, inc%suction, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin)
+      call linearise(par, inc%suction, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, at_rest, lin)
    end subroutine linearise_stage
 
    !> Changes of the arguments of a rate, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
@@ -466,7 +467,7 @@ contains
       m = interrupted_share(par, before%eps_q_p)
       e = void_ratio_at(inc, trial%time)
       call changes_along(inc, MODE_ORDINARY, trial%time, e, sens%shift, sens%driving, changes)
-      call linearise_stage(par, inc, trigger, trial%y0, trial%time, e, changes%loading, lin)
+      call linearise_stage(par, inc, trigger, trial%y0, trial%time, e, changes%loading, .false., lin)
       call changes_of_rate(par, trigger, lin, .false., sens%y, sens%r_in, sens%driving%d_strain, &
                            sens%driving%from_centre, changes, .false., rates, dn)
       dr = changes_of_ratio(par, trial%y0(1:6), sens%y)
