@@ -64,6 +64,7 @@ contains
          along(:, 1) = (d_left(:, 1) - d_left(:, n + 1) - factors(1)*fading%speed)/transient%speed
          along(:, 2) = (before*d_left(:, 1) - after*d_left(:, n + 1) - factors(2)*fading%speed)/transient%speed
       end associate
+      ! the compiler is to take two directions at once, not two of the loops around them
       !GCC$ NOVECTOR
       do i = 1, n
          weight = h*weights(i)
