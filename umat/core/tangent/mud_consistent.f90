@@ -16,8 +16,8 @@ module mud_consistent
    use mud_held, only: changes_through_hold
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_inside_changes, only: changes_inside
-   use mud_options, only: live_numbers, add_volume_changes, past_changes_t, no_past_changes, begin_past_changes, &
-      jump_of_past
+   use mud_options, only: has_numbers, live_numbers, add_volume_changes, past_changes_t, no_past_changes, &
+      begin_past_changes, jump_of_past
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows, MODE_ORDINARY
@@ -37,6 +37,8 @@ module mud_consistent
    public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, &
              changes_of_parting, change_with_size, changes_along, changes_of_ratio, &
              linearise_stage
+
+   integer, parameter :: STRESS = 6   !< So many numbers of the vector are the stress, which stands first.
 
    !> Derivatives along the directions of driving_t.
    type :: sensitivity_t
@@ -99,6 +101,8 @@ contains
       logical, intent(in) :: last
       type(sensitivity_t), intent(inout) :: sens
       real(wp) :: dh(DIRECTIONS), rates(DIRECTIONS, NY, MAX_STAGES)
+      logical :: ends
+      integer :: live
 
       call begin_past_changes(sens%y, sens%past)
       if (trial%divides .or. last) then
@@ -112,15 +116,16 @@ contains
       else if (trial%closed) then
          call changes_inside(par, inc, trial%y0, trial%time, h, sens%shift, dh, sens%driving, sens%y)
       else
-         call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, sens%at_rest, .false., &
+         ends = last .and. inc%to >= 1.0_wp
+         live = live_of_substep(par, inc, trial, ends)
+         call change_of_stage(par, inc, trial%mode, trial%w(1), trial%y0, trial%time, sens%at_rest, live == STRESS, &
                               sens%shift, sens%r_in, sens%driving, sens%y, rates(:, :, 1))
          if (trial%transient%known) then
             if (trial%transient%since >= trial%time) &
-               call change_of_transient(par, inc, trial, rates(:, :, 1), sens)
+               call change_of_transient(par, inc, trial, live == STRESS, rates(:, :, 1), sens)
          end if
-         ! at the end of the whole increment only the stress is asked for
-         call through_stages(par, inc, trial, h, last .and. inc%to >= 1.0_wp, sens%shift, dh, sens%r_in, &
-                             sens%driving, sens%fading, rates, sens%y, sens%short)
+         call through_stages(par, inc, trial, h, ends, live, sens%shift, dh, sens%r_in, sens%driving, sens%fading, &
+                             rates, sens%y, sens%short)
       end if
       sens%at_rest = .false.
       sens%shift = sens%shift + dh
@@ -148,8 +153,8 @@ contains
       else if (trial%closed) then
          call changes_inside(par, inc, trial%y0, trial%time, h, none, one, AT_REST, y)
       else
-         call through_stages(par, inc, trial, h, .false., none, one, AT_REST%d_strain, AT_REST, NO_FADING, rates, y, &
-                             short)
+         call through_stages(par, inc, trial, h, .false., live_numbers(par), none, one, AT_REST%d_strain, AT_REST, &
+                             NO_FADING, rates, y, short)
       end if
       change = y(1, :)
       of_short = short(1)
@@ -157,13 +162,14 @@ contains
 
    !> The scheme applied to all directions as one long vector, from the changes of its first rate: its start moves by
    !> `shift` in pseudo-time, its size changes by dh.
-   pure subroutine through_stages(par, inc, trial, h, ends, shift, dh, r_in, driving, fading, rates, y1, short)
+   pure subroutine through_stages(par, inc, trial, h, ends, live, shift, dh, r_in, driving, fading, rates, y1, short)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h, shift(DIRECTIONS), dh(DIRECTIONS)
       type(tensors_t), intent(in) :: r_in
-      logical, intent(in) :: ends
+      logical, intent(in) :: ends   !< Only the stress at the end is asked for ...
+      integer, intent(in) :: live   !< ... for which so many numbers of the stages are needed.
       type(driving_t), intent(in) :: driving
       type(fading_t), intent(in) :: fading
       real(wp), intent(inout) :: rates(DIRECTIONS*NY, MAX_STAGES)   !< The first is given.
@@ -171,16 +177,13 @@ contains
       real(wp), intent(inout) :: short(DIRECTIONS)   !< Derivatives of what lacks to the memory, see below_t.
       real(wp) :: y(DIRECTIONS*NY), time, dt(DIRECTIONS), left(MAX_STAGES + 1), d_left(DIRECTIONS, MAX_STAGES + 1)
       type(below_t) :: below
-      integer :: i, last, row, live, n
+      integer :: i, last, row, asked, n
       logical :: moves
 
-      ! the last stage of such a pair serves the error estimate and the next substep, not the solution
-      last = inc%scheme%stages
-      if (inc%scheme%first_same_as_last) last = last - 1
+      last = last_of_solution(inc)
       moves = any(abs(dh) > 0.0_wp)
       call begin_below(par, inc, trial, h, ends, below)
       call follow_below(par, inc, trial, h, 1, trial%y0, trial%time, shift, dh, short, driving, y1, rates(:, 1), below)
-      live = live_numbers(par)
       n = DIRECTIONS*live
       if (trial%transient%known) &
          call change_of_left(trial%transient, fading, trial%time, shift, left(1), d_left(:, 1))
@@ -196,32 +199,62 @@ contains
                call add_changes_of_faded(trial%transient, fading, i - 1, h, weights, left, d_left, live, y(1:n))
             end if
             call change_of_stage(par, inc, trial%mode, trial%w(i), trial%points(:, i), time, .false., &
-                                 ends .and. i == last, dt, r_in, driving, y, rates(:, i))
+                                 live == STRESS .or. (ends .and. i == last), dt, r_in, driving, y, rates(:, i))
          end associate
          call follow_below(par, inc, trial, h, i, trial%points(:, i), time, dt, dh, short, driving, y, rates(:, i), &
                            below)
          call finish_stage(trial, h, i, live, moves, dh, rates)
       end do
-      if (ends) live = 6   ! stresses stand first
-      n = DIRECTIONS*live
+      asked = live
+      if (ends) asked = STRESS
+      n = DIRECTIONS*asked
       y(1:n) = y1(1:n)
       associate (weights => inc%scheme%b(1:last))
          call solution(inc%scheme, y(1:n), rates, h, y1(1:n))
          if (trial%transient%known) then
             call change_of_left(trial%transient, fading, trial%time + h, shift + dh, left(last + 1), &
                                 d_left(:, last + 1))
-            call add_changes_of_faded(trial%transient, fading, last, h, weights, left, d_left, live, y1(1:n))
+            call add_changes_of_faded(trial%transient, fading, last, h, weights, left, d_left, asked, y1(1:n))
          end if
       end associate
       call end_below(inc, last, below, short)
    end subroutine through_stages
 
-   !> Derivatives of what fades of the rates from the start of this substep on, whose first rate changes by now. Where
-   !> the strain does not turn yet, what a turn would add fades too: by the first power of its angle as exp(-k t).
-   pure subroutine change_of_transient(par, inc, trial, now, sens)
+   !> Number of stages of which the solution is made: the last one of some pairs serves the error estimate and the next
+   !> substep.
+   pure integer function last_of_solution(inc) result(last)
+      type(increment_t), intent(in) :: inc
+
+      last = inc%scheme%stages
+      if (inc%scheme%first_same_as_last) last = last - 1
+   end function last_of_solution
+
+   !> Numbers of the vector that a substep needs: only the stress, which stands first, where the increment ends and no
+   !> later stage has z:n > 0, by which alone fabric acts.
+   pure integer function live_of_substep(par, inc, trial, ends) result(live)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
+      logical, intent(in) :: ends
+      integer :: i
+
+      live = live_numbers(par)
+      if (.not. ends .or. has_numbers(par) .or. trial%relaxation%speed > 0.0_wp) return
+      do i = 2, last_of_solution(inc)
+         if (trial%w(i)%loading) then
+            if (trial%w(i)%z_n > 0.0_wp) return
+         end if
+      end do
+      live = STRESS
+   end function live_of_substep
+
+   !> Derivatives of what fades of the rates from the start of this substep on, whose first rate changes by now. Where
+   !> the strain does not turn yet, what a turn would add fades too: by the first power of its angle as exp(-k t).
+   pure subroutine change_of_transient(par, inc, trial, stress_only, now, sens)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(trial_t), intent(in) :: trial
+      logical, intent(in) :: stress_only
       real(wp), intent(in) :: now(DIRECTIONS, NY)
       type(sensitivity_t), intent(inout) :: sens
       real(wp), dimension(DIRECTIONS, NY) :: far, half
@@ -231,18 +264,18 @@ contains
       associate (transient => trial%transient, at_rest => sens%at_rest, shift => sens%shift)
          if (transient%terms == 0) then
             call change_of_stage(par, without_turn(inc), MODE_ORDINARY, trial%w(1), trial%y0, trial%time, at_rest, &
-                                 .false., shift, sens%r_in, sens%driving, sens%y, far)
+                                 stress_only, shift, sens%r_in, sens%driving, sens%y, far)
          else
             call change_of_stage(par, without_turn(inc), MODE_ORDINARY, transient%far, trial%y0, trial%time, at_rest, &
-                                 .false., shift, sens%r_in, sens%driving, sens%y, far)
+                                 stress_only, shift, sens%r_in, sens%driving, sens%y, far)
          end if
          if (transient%terms < 2) then
             call begin_fading(now, far, speed, shift, sens%fading)
             return
          end if
          call change_of_stage(par, inc, MODE_ORDINARY, transient%half, trial%y0, half_way(transient), at_rest, &
-                              .false., shift - ((half_way(transient) - trial%time)/transient%speed)*speed, sens%r_in, &
-                              sens%driving, sens%y, half)
+                              stress_only, shift - ((half_way(transient) - trial%time)/transient%speed)*speed, &
+                              sens%r_in, sens%driving, sens%y, half)
          call begin_fading(now, far, speed, shift, sens%fading, half)
       end associate
    end subroutine change_of_transient
@@ -300,9 +333,9 @@ contains
 
       e = void_ratio_at(inc, time)
       call changes_along(inc, mode, time, e, dt, driving, changes)
-      call linearise_stage(par, inc, w, point, time, e, changes%loading, lin)
       rests = at_rest
       if (at_rest) rests = are_zero(changes)
+      call linearise_stage(par, inc, w, point, time, e, changes%loading, rests, lin)
       call changes_of_rate(par, w, lin, rests, y, r_in, driving%d_strain, driving%from_centre, &
                            changes, stress_only, rates)
       if (.not. stress_only) call add_volume_changes(par, inc%d_v, point, y, driving%d_v, rates)
@@ -318,15 +351,16 @@ contains
    !> Prepares the derivative of the rate w of a stage, at a point of the integrated vector, a pseudo-time and a void
    !> ratio. point has sigma' [kPa], z and plastic shear [-]; time is a share of inc, e the void ratio [-].
    !> docs/theory/integration.md section 5.3.
-   pure subroutine linearise_stage(par, inc, w, point, time, e, loading, lin)
+   pure subroutine linearise_stage(par, inc, w, point, time, e, loading, at_rest, lin)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: point(NY), time, e
       type(loading_t), intent(in) :: loading   !< loading part of the strain rate there
+      logical, intent(in) :: at_rest
       type(linearised_t), intent(inout) :: lin
 
-      call linearise(par, inc%suction, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, lin)
+      call linearise(par, inc%suction, w, point(1:6), e, suction_at(inc, time), loading, inc%d_pc, at_rest, lin)
    end subroutine linearise_stage
 
    !> Changes of the arguments of a rate, beside stress, fabric and memory, at a pseudo-time that itself changes by dt.
@@ -466,7 +500,7 @@ contains
       m = interrupted_share(par, before%eps_q_p)
       e = void_ratio_at(inc, trial%time)
       call changes_along(inc, MODE_ORDINARY, trial%time, e, sens%shift, sens%driving, changes)
-      call linearise_stage(par, inc, trigger, trial%y0, trial%time, e, changes%loading, lin)
+      call linearise_stage(par, inc, trigger, trial%y0, trial%time, e, changes%loading, .false., lin)
       call changes_of_rate(par, trigger, lin, .false., sens%y, sens%r_in, sens%driving%d_strain, &
                            sens%driving%from_centre, changes, .false., rates, dn)
       dr = changes_of_ratio(par, trial%y0(1:6), sens%y)

@@ -71,7 +71,7 @@ contains
       dt(BY_SIZE) = 1.0_wp
       call changes_along(inc, mode, time, e, dt, sens%driving, changes)
       if (EVENTS(event)%looks_at /= NO_RATE) &
-         call linearise_stage(par, inc, w, trial%y, time, e, changes%loading, lin)
+         call linearise_stage(par, inc, w, trial%y, time, e, changes%loading, .false., lin)
       call fill_changes(par, inc, event, trial, time, w, lin, y, r_in, short, sens%driving, changes, c)
       slopes = slopes_of_event(par, inc, event, trial, time, w, c)
       do j = 1, DIRECTIONS - 1

@@ -64,6 +64,8 @@ contains
          along(:, 1) = (d_left(:, 1) - d_left(:, n + 1) - factors(1)*fading%speed)/transient%speed
          along(:, 2) = (before*d_left(:, 1) - after*d_left(:, n + 1) - factors(2)*fading%speed)/transient%speed
       end associate
+      ! the compiler is to take two directions at once, not two of the loops around them
+      !GCC$ NOVECTOR
       do i = 1, n
          weight = h*weights(i)
          factors = factors - weight*[left(i), left(i)**2]
@@ -71,6 +73,7 @@ contains
          along(:, 2) = along(:, 2) - (2.0_wp*weight*left(i))*d_left(:, i)
       end do
       if (transient%terms == 1) then
+         !GCC$ NOVECTOR
          do i = 1, live
             y(:, i) = y(:, i) + factors(1)*fading%parts(:, i, 1) + along(:, 1)*transient%parts(i, 1)
          end do

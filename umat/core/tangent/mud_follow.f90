@@ -86,6 +86,7 @@ contains
          if (trial%mode /= MODE_HELD) call keep_past_changes(par, trial%y0, trial%y, trial%past, sens%y, sens%past)
          if (trial%drifts) sens%r_in = tensors_t(changes_of_ratio(par, it%state%sigma, sens%y), ANY_TENSORS)
       end associate
-      call changes_at_memory(par, it%inc, it%state, it%reached, sens%shift, sens%driving, sens%y, sens%short)
+      if (it%reached < 1.0_wp) &   ! at the end of the increment only the stress is asked for
+         call changes_at_memory(par, it%inc, it%state, it%reached, sens%shift, sens%driving, sens%y, sens%short)
    end subroutine follow_substep
 end module mud_follow

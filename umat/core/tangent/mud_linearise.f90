@@ -70,20 +70,45 @@ contains
    !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for the strain rate of loading and d_pc.
    !> sigma' and p_c [kPa], compression positive; e [-]; d_pc [kPa]. Of a rate that does not load the gradients and the
    !> inverse are not set. docs/theory/integration.md sections 5.2, 5.3.
-   pure subroutine linearise(par, law, w, sigma, e, p_c, loading, d_pc, lin)
+   pure subroutine linearise(par, law, w, sigma, e, p_c, loading, d_pc, at_rest, lin)
       type(params_t), intent(in) :: par
       type(suction_law_t), intent(in) :: law   !< in the phase
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: sigma(6), e, p_c, d_pc
       type(loading_t), intent(in) :: loading
+      logical, intent(in) :: at_rest   !< The state does not change: slopes by it are not set.
       type(linearised_t), intent(inout) :: lin
       real(wp) :: traces(2)
 
-      lin%held_p = .not. p_follows(par, sigma)
       traces = [trace(loading%basis(:, 1)), trace(loading%basis(:, 2))]
       lin%d_v = loading%part(1)*traces(1) + loading%part(2)*traces(2)
       lin%whole_v = loading%whole(1)*traces(1) + loading%whole(2)*traces(2)
       lin%d_pc = d_pc
+      lin%aside = loading%aside
+      lin%g_centre = w%g
+      if (loading%aside) then
+         call changed_centre_modulus(par%elastic, e, w%k, loading%from_centre, lin%g_centre, lin%g_centre_slopes)
+      else if (loading%beside) then
+         lin%g_centre = centre_modulus(par%elastic, e, w%k, loading%from_centre)
+      end if
+      lin%per_p = 1.0_wp/w%p
+      if (.not. at_rest) call linearise_state(par, law, w, sigma, e, p_c, lin)
+      if (.not. w%loading) return
+      call find_turn(par, w, lin%turn_t)
+      lin%on_e = (lin%on_t + (w%k_e*(lin%d_v - w%b_rate))*lin%on_r)/(2.0_wp*w%g)   ! t = 2 G e - V r
+      lin%per_gamma = 1.0_wp/w%gamma
+      lin%per_y = 1.0_wp/w%y
+   end subroutine linearise
+
+   !> Sets what the changes of the state alone need.
+   pure subroutine linearise_state(par, law, w, sigma, e, p_c, lin)
+      type(params_t), intent(in) :: par
+      type(suction_law_t), intent(in) :: law
+      type(rate_t), intent(in) :: w
+      real(wp), intent(in) :: sigma(6), e, p_c
+      type(linearised_t), intent(inout) :: lin
+
+      lin%held_p = .not. p_follows(par, sigma)
       lin%curvature = 0.0_wp
       lin%with_turn = 0.0_wp
       if (law%bonds) then
@@ -95,22 +120,9 @@ contains
       lin%k_slope = bulk_slope(e)
       lin%g_slope = shear_slope(e)
       lin%b_slope = kinematic_slope(par%hardening, e)
-      lin%aside = loading%aside
-      lin%g_centre = w%g
-      if (loading%aside) then
-         call changed_centre_modulus(par%elastic, e, w%k, loading%from_centre, lin%g_centre, lin%g_centre_slopes)
-      else if (loading%beside) then
-         lin%g_centre = centre_modulus(par%elastic, e, w%k, loading%from_centre)
-      end if
-      lin%per_p = 1.0_wp/w%p
       lin%per_f = 1.0_wp/w%bond%f
       if (w%iso_active) call linearise_mechanism(par, w, e, lin)
-      if (.not. w%loading) return
-      call find_turn(par, w, lin%turn_t)
-      lin%on_e = (lin%on_t + (w%k_e*(lin%d_v - w%b_rate))*lin%on_r)/(2.0_wp*w%g)   ! t = 2 G e - V r
-      lin%per_gamma = 1.0_wp/w%gamma
-      lin%per_y = 1.0_wp/w%y
-   end subroutine linearise
+   end subroutine linearise_state
 
    !> Sets the part of a linearisation that has the isotropic mechanism, which acts or would.
    !> docs/theory/integration.md section 5.3.

@@ -288,8 +288,10 @@ contains
          s%p(j) = turned*x%turn%p(j)
       end do
       call add_up(w, y, strain, centre, changes, s, rates)
-      do i = 1, 6
-         rates(:, i) = rates(:, i) + (par%flow%c_z*w%z(i))*x%flow + turning*y(:, 6 + i)
+      do j = 1, LANES
+         do i = 1, 6
+            rates(j, i) = rates(j, i) + (par%flow%c_z*w%z(i))*x%flow(j) + turning*y(j, 6 + i)
+         end do
       end do
    end subroutine fill_fabric
 

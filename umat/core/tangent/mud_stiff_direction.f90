@@ -40,7 +40,7 @@ contains
       changes%scans = .false.
       call changes_of_loading_strain(inc, trial%mode, trial%time, REST, REST, unmoved, changes%loading)
       call linearise_stage(par, inc, trial%w(1), trial%y0, trial%time, void_ratio_at(inc, trial%time), &
-                           changes%loading, lin)
+                           changes%loading, .false., lin)
       y = 0.0_wp
       do j = 1, 6
          y(j, j) = 1.0_wp
