@@ -229,7 +229,7 @@ contains
    end function numbers_of
 
    !> A text; `value` stays where the group has none.
-   subroutine get_text(group, name, value)
+   pure subroutine get_text(group, name, value)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
       character(LENGTH), intent(inout) :: value

@@ -18,12 +18,12 @@ module absorbing
    use linear_forces, only: linear_forces_t
    use material_point, only: response_t, batch_report_t
    use model_types, only: model_t, action_t, factor_at
-   use name_search, only: mesh_group, defined_name
+   use name_search, only: mesh_group, history_named
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: model_state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -86,10 +86,9 @@ contains
    end subroutine take
 
    !> The boundaries. Fault EXIT_GROUP: a boundary, history or stage that is not defined, or a group without edges.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(absorbing_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -107,8 +106,7 @@ contains
             side%damps = .true.
             call take(tables(i), side, boundary, history)
             side%group = mesh_group(model%domain%mesh, boundary, place_of(side), fault)
-            if (fault%code == 0 .and. history /= '') &
-               side%amplitude = defined_name('history', history, model%amplitudes%name, place_of(side), fault)
+            if (fault%code == 0) side%amplitude = history_named(history, model%amplitudes%name, place_of(side), fault)
             if (fault%code /= 0) return
             if (size(model%domain%mesh%groups(side%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
                place_of(side)//'group '''//trim(boundary)//''' has no edges that waves could leave through.')

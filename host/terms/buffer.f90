@@ -17,7 +17,7 @@ module buffer
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of, acts_in
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use sparsity_pattern, only: pattern_t, place_of_entry => place_of
    use unknown_fields, only: AT_U_Z
@@ -76,10 +76,9 @@ contains
    end subroutine take
 
    !> Fault EXIT_GROUP: a plate or stage that is not defined. EXIT_INPUT: one plate at both ends.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(buffer_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault

@@ -13,7 +13,7 @@ module contact_drainage
    use faults, only: fault_t, raise, EXIT_INPUT
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -48,10 +48,9 @@ contains
 
    !> Which &fix give way to which contacts: those that prescribe a pressure on all nodes of an edge of the slave. Fault
    !> EXIT_INPUT: the scene has no pressures, or a contact whose drainage follows its state has no such &fix.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(contact_drainage_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault

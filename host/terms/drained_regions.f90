@@ -10,7 +10,6 @@ module drained_regions
    use model_types, only: model_t
    use porous_domain, only: domain_t, DRAINED, UNDRAINED
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use solution, only: solution_t
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
@@ -23,10 +22,9 @@ module drained_regions
    end type drained_regions_t
 contains
    !> Its key is one of regions, which are built before. Raises no fault.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(drained_regions_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault

@@ -12,7 +12,6 @@ module friction
    use contact_types, only: contact_options_t, has_friction
    use faults, only: fault_t, raise
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use solution, only: solution_t
    implicit none (type, external)
    private
@@ -42,10 +41,9 @@ contains
    end subroutine take
 
    !> The options of the contacts. Raises no fault.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(friction_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault

@@ -9,11 +9,10 @@ module plane_plates
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
-   use model_types, only: model_t, plate_t, coordinate_t
+   use model_types, only: model_t, acting_t, plate_t, coordinate_t
    use plate_motion, only: plate_motion_t
-   use scene_parts, only: acting_values_t, place_of
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use triangle_mesh, only: find_group
    use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
@@ -73,10 +72,9 @@ contains
    !> Gives plates their motion in the plane, then supports and loads their rotation. Fault EXIT_INPUT: a motion that
    !> axial symmetry has no place for, or that lacks centre or inertia; a rotation or moment of something else.
    !> EXIT_GROUP: the name of its group is taken, or no edges could move with the plate.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(plane_plates_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -106,10 +104,10 @@ contains
          if (fault%code /= 0) return
       end do
       do i = 1, size(model%fixes)
-         call act_on_rotation(model%plates, .true., model%fixes(i)%acting_values_t, model%fixes(i)%group, fault)
+         call act_on_rotation(model%plates, .true., model%fixes(i)%acting_t, fault)
       end do
       do i = 1, size(model%loads)
-         call act_on_rotation(model%plates, .false., model%loads(i)%acting_values_t, model%loads(i)%group, fault)
+         call act_on_rotation(model%plates, .false., model%loads(i)%acting_t, fault)
       end do
    end subroutine build
 
@@ -163,11 +161,10 @@ contains
    end subroutine free_in_plane
 
    !> Lets a rotation or a moment act on the unknown of the plate that it names. Fault EXIT_INPUT: there is none.
-   subroutine act_on_rotation(plates, moves, one, group, fault)
+   subroutine act_on_rotation(plates, moves, one, fault)
       type(plate_t), intent(in) :: plates(:)
       logical, intent(in) :: moves   !< A rotation, else a moment.
-      type(acting_values_t), intent(inout) :: one
-      integer, intent(inout) :: group
+      type(acting_t), intent(inout) :: one
       type(fault_t), intent(inout) :: fault
       integer :: i
 
@@ -175,7 +172,7 @@ contains
       do i = 1, size(plates)
          if (plates(i)%name /= one%group_name .or. size(plates(i)%coordinates) < TURN) cycle
          associate (rotation => plates(i)%coordinates(TURN))
-            group = rotation%group
+            one%group = rotation%group
             one%value = merge(one%value*rotation%unit, one%value/rotation%unit, moves)
             one%value_slope = merge(one%value_slope*rotation%unit, one%value_slope/rotation%unit, moves)
          end associate

@@ -13,7 +13,6 @@ module run_off
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: acts_in, place_of, stage_t, LOAD_RAIN
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use solution, only: solution_t
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -49,10 +48,9 @@ contains
 
    !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
    !> pond without weight.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(run_off_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault

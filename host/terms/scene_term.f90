@@ -4,7 +4,6 @@ module scene_term
    use faults, only: fault_t
    use key_table, only: key_table_t
    use model_types, only: model_t, term_t
-   use scene_types, only: scene_t
    implicit none (type, external)
    private
    public :: scene_term_t
@@ -16,13 +15,12 @@ module scene_term
    end type scene_term_t
 
    abstract interface
-      !> Takes what the term needs of a scene, and of a model whose mesh, regions and boundaries are known, and tells
+      !> Takes what the term needs of its groups, and of a model whose mesh, regions and boundaries are known, and tells
       !> the model what it adds: actions, ground. Faults: what the scene asks of the term and cannot be.
-      subroutine build_i(self, tables, scene, model, there, fault)
-         import :: scene_term_t, key_table_t, scene_t, model_t, fault_t
+      subroutine build_i(self, tables, model, there, fault)
+         import :: scene_term_t, key_table_t, model_t, fault_t
          class(scene_term_t), intent(inout) :: self
          type(key_table_t), intent(inout) :: tables(:)   !< Every group of the scene that the term's keys stand in.
-         type(scene_t), intent(in) :: scene
          type(model_t), intent(inout) :: model
          logical, intent(out) :: there   !< Whether the scene has it.
          type(fault_t), intent(inout) :: fault

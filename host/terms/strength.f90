@@ -11,7 +11,7 @@ module strength
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use texts, only: short, LENGTH
    implicit none (type, external)
@@ -57,10 +57,9 @@ contains
    !> Places of what the groups &strength name, and whether the laws allow what their histories ask. Fault EXIT_GROUP: a
    !> material or history that is not defined; EXIT_INPUT: a parameter that cannot change, two histories of one, a
    !> factor that is not 1 at the start, a value that the law refuses.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(strength_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
@@ -73,10 +72,10 @@ contains
             s%scene_item_t = item_of(tables(i)%group)
             call take(tables(i), s)
             s%amplitude = defined_name('history', s%amplitude_name, model%amplitudes%name, place_of(s), fault)
-            if (fault%code == 0) k = defined_name('material', s%material_name, scene%materials%name, place_of(s), fault)
+            if (fault%code == 0) k = defined_name('material', s%material_name, model%materials%name, place_of(s), fault)
             if (fault%code /= 0) return
             call check_history(model, self%changes, i, fault)
-            s%in_region = scene%regions%material_name == s%material_name
+            s%in_region = model%regions%material_name == s%material_name
             do k = 1, size(s%in_region)
                if (fault%code /= 0) return
                if (s%in_region(k)) call check_law(model, s, model%domain%regions(k)%law, fault)

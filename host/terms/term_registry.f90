@@ -113,7 +113,7 @@ contains
       do i = 1, size(groups)
          tables(i)%group = groups(i)
       end do
-      call registered%term%build(tables, scene, model, there, fault)
+      call registered%term%build(tables, model, there, fault)
       if (fault%code /= 0 .or. .not. there) return
       allocate (box%term, source=registered%term)
       model%terms = [model%terms, box]

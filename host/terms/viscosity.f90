@@ -8,7 +8,6 @@ module viscosity
    use kinds, only: wp
    use model_types, only: model_t
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    implicit none (type, external)
    private
    public :: viscosity_t
@@ -40,10 +39,9 @@ contains
    end subroutine take
 
    !> What the points of regions have against the rate of strain. Raises no fault.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(viscosity_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault

@@ -12,7 +12,7 @@ module ground_spring
    use texts, only: LENGTH
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -54,10 +54,9 @@ contains
    end subroutine take
 
    !> Fault EXIT_GROUP: a group or stage that is not defined.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, tables, model, there, fault)
       class(ground_spring_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault

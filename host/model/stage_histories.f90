@@ -4,8 +4,8 @@
 module stage_histories
    use kinds, only: wp
    use faults, only: fault_t, raise, EXIT_INPUT
+   use model_types, only: model_t
    use scene_parts, only: amplitude_t, place_of
-   use scene_types, only: scene_t
    use texts, only: short
    implicit none (type, external)
    private
@@ -15,27 +15,27 @@ module stage_histories
 contains
    !> Stages are known. Fault EXIT_INPUT: a history lasts beyond the start of the stage that it
    !> begins anew in, or would jump there.
-   subroutine place_histories(scene, fault)
-      type(scene_t), intent(inout) :: scene
+   subroutine place_histories(model, fault)
+      type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      do i = 1, size(scene%amplitudes)
-         if (fault%code == 0 .and. size(scene%amplitudes(i)%stages) > 0) call place(scene, scene%amplitudes(i), fault)
+      do i = 1, size(model%amplitudes)
+         if (fault%code == 0 .and. size(model%amplitudes(i)%stages) > 0) call place(model, model%amplitudes(i), fault)
       end do
    end subroutine place_histories
 
-   subroutine place(scene, h, fault)
-      type(scene_t), intent(in) :: scene
+   subroutine place(model, h, fault)
+      type(model_t), intent(in) :: model
       type(amplitude_t), intent(inout) :: h
       type(fault_t), intent(inout) :: fault
-      logical :: named(size(scene%stages))
+      logical :: named(size(model%stages))
       real(wp), allocatable :: times(:), values(:)
       integer, allocatable :: arcs(:)
       real(wp) :: start, length
       integer :: i, s, n
 
-      named = [(any(h%stages == scene%stages(s)%name), s=1, size(named))]
+      named = [(any(h%stages == model%stages(s)%name), s=1, size(named))]
       n = size(h%times)
       if (count(named) > 1 .and. abs(h%values(n) - h%values(1)) > 0.0_wp) then
          call raise(fault, EXIT_INPUT, place_of(h)//'history '''//trim(h%name)//''' begins anew in several stages, '// &
@@ -47,7 +47,7 @@ contains
       allocate (times(0), values(0), arcs(0))
       do s = 1, size(named)
          if (.not. named(s)) cycle
-         start = sum(scene%stages(:s - 1)%duration)
+         start = sum(model%stages(:s - 1)%duration)
          i = size(times)
          if (i == 0) then
             times = start + h%times
@@ -56,7 +56,7 @@ contains
          else if (start + h%times(1) < times(i) - ROUNDING*length) then
             call raise(fault, EXIT_INPUT, place_of(h)//'history '''//trim(h%name)//''' lasts up to '// &
                        short(times(i))//' s, and begins anew at '//short(start + h%times(1))//' s with stage '// &
-                       trim(scene%stages(s)%name)//': shorten it, or lengthen the stage before.')
+                       trim(model%stages(s)%name)//': shorten it, or lengthen the stage before.')
             return
          else if (start + h%times(1) <= times(i) + ROUNDING*length) then
             times = [times, start + h%times(2:)]
