@@ -7,7 +7,7 @@ module cycles_alarm
    use kinds, only: wp
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
    use model_types, only: model_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use scene_parts, only: amplitude_at, acts_in
    use texts, only: short, whole
@@ -42,11 +42,10 @@ contains
    end subroutine exchange
 
    !> Makes room for the histories, which start where the run does.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       integer :: i
 
@@ -56,18 +55,17 @@ contains
    end subroutine begins
 
    !> Counts the turns of the histories that act in the stage, and tells when one has many, once, on standard error.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp) :: factor, least
       integer :: i
 
       do i = 1, size(self%turns)
          factor = amplitude_at(model%amplitudes(i), run%next%time)
-         if (.not. acts(model, i, model%stages(news%stage)%name)) then
+         if (.not. acts(model, i, model%stages(run%at%stage)%name)) then
             self%farthest(i) = factor
             self%sense(i) = 0
             cycle
@@ -78,7 +76,7 @@ contains
          call follow(factor, least, self%farthest(i), self%sense(i), self%turns(i))
          if (self%told .or. self%turns(i) <= MANY_REVERSALS .or. .not. any_counts(model)) cycle
          self%told = .true.
-         call print_warning('stage '//trim(model%stages(news%stage)%name)//', time '//short(run%next%time)// &
+         call print_warning('stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%next%time)// &
             ' s: history '''//trim(model%amplitudes(i)%name)//''' has turned '//whole(self%turns(i))//' times: '// &
             CYCLES_UNTRUSTED)
       end do

@@ -12,7 +12,7 @@ module output_tables
    use named_points, only: unknowns_at, motion_at
    use porous_domain, only: domain_t, model_state_t
    use reaction_rows, only: reaction_columns, reaction_row
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
    use surface_forces, only: surface_forces_t
@@ -49,11 +49,10 @@ contains
 
    !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: a table is missing, too short or cannot be
    !> written.
-   subroutine fits(self, model, run, news, fault)
+   subroutine fits(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call check_csv(self%folder//'/histories.csv', self%history%bytes, fault)
@@ -64,11 +63,10 @@ contains
    end subroutine fits
 
    !> Opens the tables; a new run writes its start. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       logical :: resume
 
@@ -82,21 +80,20 @@ contains
    end subroutine begins
 
    !> Writes the rows of a step that are due. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine taken_over(self, model, run, news, fault)
+   subroutine taken_over(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (is_open(self%contact)) then
-         write (self%contact%row, NUMBERS) contact_row(model, run%system%contacts, news%scheme%dt, run%state, &
-                                                       news%contact_work)
+         write (self%contact%row, NUMBERS) contact_row(model, run%system%contacts, run%scheme%dt, run%state, &
+                                                       run%news%contact_work)
          call write_row(self%contact, fault)
       end if
-      if (mod(run%at%step, model%stages(news%stage)%every) == 0 .or. news%last) then
+      if (mod(run%at%step, model%stages(run%at%stage)%every) == 0 .or. run%news%last) then
          call write_history(self%history, model, run%state, fault)
-         if (fault%code == 0) call write_reactions(self, model, run, news%scheme%dt, fault)
+         if (fault%code == 0) call write_reactions(self, model, run, run%scheme%dt, fault)
       end if
       call hand_over(self%history, fault)
       call hand_over(self%contact, fault)
@@ -105,11 +102,10 @@ contains
 
    !> Ends the table of reactions, and writes the tables of a stage; after a failure too, for what was computed. Fault
    !> EXIT_OUTPUT: a file cannot be written.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: name
 
@@ -121,11 +117,10 @@ contains
    end subroutine stage_ends
 
    !> Closes the tables; the first that fails is reported. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, model, run, news, fault)
+   subroutine ends(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call close_csv(self%history, fault)

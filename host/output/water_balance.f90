@@ -12,7 +12,7 @@ module water_balance
    use model_types, only: model_t
    use porous_domain, only: domain_t, model_state_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use prescribed_values, only: constraint_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -59,16 +59,15 @@ contains
    end subroutine exchange
 
    !> Books the water of a step.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(water_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       integer :: e
 
-      if (.not. news%scheme%has_rates .or. .not. model%domain%with_w) return
-      call book_boundaries(model%dofs, news%scheme, run%constraint, run%system%reaction, run%state, run%next, &
+      if (.not. run%scheme%has_rates .or. .not. model%domain%with_w) return
+      call book_boundaries(model%dofs, run%scheme, run%constraint, run%system%reaction, run%state, run%next, &
                            self%water)
       do e = 1, size(model%domain%region_of)
          if (is_present(run%state, e) .and. any(model%domain%regions(model%domain%region_of(e))%drainage == &
@@ -79,11 +78,10 @@ contains
 
    !> Warns at the end of a stage of the water that is missing or made; not where the scene leaves a part of the rate of
    !> saturation out.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(water_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: of_what
       real(wp) :: missing
