@@ -18,24 +18,23 @@ module boundary_conditions
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
 contains
    !> Nothing prescribed, nothing loaded; plates have their mass. Extents: see constraint_t.
-   function new_constraint(model, dofs) result(constraint)
+   function new_constraint(model) result(constraint)
       type(model_t), intent(in) :: model
-      type(dofs_t), intent(in) :: dofs
       type(constraint_t) :: constraint
-      integer :: i, nodes
+      integer :: i
 
-      nodes = size(model%domain%mesh%x, 2)
-      allocate (constraint%fixed(dofs%n), constraint%limited(dofs%n), source=.false.)
-      allocate (constraint%limited_by(dofs%n), constraint%releases(dofs%n), constraint%body(dofs%n), source=0)
-      allocate (constraint%air(nodes), source=.false.)
-      allocate (constraint%target(dofs%n), constraint%load_0(dofs%n), constraint%load_1(dofs%n), &
-                constraint%rain_0(dofs%n), constraint%rain_1(dofs%n), constraint%offset(dofs%n), &
-                constraint%mass(dofs%n), source=0.0_wp)
-      allocate (constraint%air_target(nodes), source=0.0_wp)
+      associate (n => model%dofs%n, nodes => size(model%domain%mesh%x, 2))
+         allocate (constraint%fixed(n), constraint%limited(n), source=.false.)
+         allocate (constraint%limited_by(n), constraint%releases(n), constraint%body(n), source=0)
+         allocate (constraint%air(nodes), source=.false.)
+         allocate (constraint%target(n), constraint%load_0(n), constraint%load_1(n), constraint%rain_0(n), &
+                   constraint%rain_1(n), constraint%offset(n), constraint%mass(n), source=0.0_wp)
+         allocate (constraint%air_target(nodes), source=0.0_wp)
+      end associate
       allocate (constraint%linear(0), constraint%added(0))
       do i = 1, size(model%plates)
          ! Plates whose boundaries a &tie joins have one unknown.
-         associate (of => model%plates(i)%coordinates, at => unknowns_of(model%plates(i), dofs))
+         associate (of => model%plates(i)%coordinates, at => unknowns_of(model%plates(i), model%dofs))
             constraint%mass(at) = constraint%mass(at) + of%mass/of%unit**2
             constraint%body(at) = i
          end associate
@@ -44,10 +43,9 @@ contains
 
    !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
    !> docs/theory/host.md sections 3.5, 7.1 and 7.7. Accelerations: see follow_accelerations.
-   subroutine constrain_step(model, stage, dofs, time, x_start, constraint)
+   subroutine constrain_step(model, stage, time, x_start, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: time, x_start(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa].
       type(constraint_t), intent(inout) :: constraint
       real(wp) :: value, factor
@@ -65,12 +63,12 @@ contains
                if (is_released(constraint, i, node)) cycle
                value = value_of(fix, model%domain%mesh%x(2, node), factor)
                if (fix%field == PRESCRIBED_P_A) then
-                  if (dofs%of(AT_P_C, node) == 0) cycle
+                  if (model%dofs%of(AT_P_C, node) == 0) cycle
                   constraint%air(node) = .true.
                   constraint%air_target(node) = value
                   if (fix%hold) constraint%air_target(node) = x_start(AT_P_W, node) + x_start(AT_P_C, node)
                else
-                  at = dofs%of(fix%field, node)
+                  at = model%dofs%of(fix%field, node)
                   if (at == 0) cycle
                   constraint%fixed(at) = .true.
                   constraint%target(at) = value
@@ -126,10 +124,9 @@ contains
    !> Displacements at the end of a step whose accelerations are prescribed: those that the scheme gives them, so that
    !> inertia is exact and free of the ringing that a prescribed displacement has. Accelerations of the scheme belong to
    !> the time (gamma - 1/2) dt before the end of the step. docs/theory/host.md section 7.5.
-   subroutine follow_accelerations(model, stage, dofs, scheme, state, constraint)
+   subroutine follow_accelerations(model, stage, scheme, state, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
       type(model_state_t), intent(in) :: state   !< Before the step.
       type(constraint_t), intent(inout) :: constraint
@@ -141,7 +138,7 @@ contains
             if (.not. fix%acceleration .or. .not. acts(fix, stage, state%time + scheme%dt)) cycle
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                associate (node => model%domain%mesh%groups(fix%group)%nodes(k), f => fix%field, dt => scheme%dt)
-                  at = dofs%of(f, node)
+                  at = model%dofs%of(f, node)
                   if (at == 0) cycle
                   constraint%target(at) = state%x(f, node)
                   if (.not. scheme%has_inertia) cycle
@@ -155,10 +152,9 @@ contains
    end subroutine follow_accelerations
 
    !> Accelerations that prescribed ones have when a stage begins; 0 elsewhere. docs/theory/host.md section 7.5.
-   subroutine starting_accelerations(model, stage, dofs, scheme, time, a)
+   subroutine starting_accelerations(model, stage, scheme, time, a)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme   !< Of the first step.
       real(wp), intent(in) :: time   !< [s]
       real(wp), intent(out) :: a(:)   !< (unknowns) [m/s2]
@@ -169,7 +165,7 @@ contains
          associate (fix => model%fixes(i))
             if (.not. fix%acceleration .or. .not. acts(fix, stage, time + scheme%dt)) cycle
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
-               at = dofs%of(fix%field, model%domain%mesh%groups(fix%group)%nodes(k))
+               at = model%dofs%of(fix%field, model%domain%mesh%groups(fix%group)%nodes(k))
                if (at > 0) &
                   a(at) = acceleration_at(model, fix, model%domain%mesh%groups(fix%group)%nodes(k), scheme, time)
             end do
@@ -200,10 +196,9 @@ contains
 
    !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:
    !> none. The last one counts, as in constrain_step.
-   subroutine prescribing_fixes(model, stage, dofs, constraint, time, by, air_by)
+   subroutine prescribing_fixes(model, stage, constraint, time, by, air_by)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
       real(wp), intent(in) :: time   !< At the end of a step [s].
       integer, intent(out) :: by(:), air_by(:)   !< (unknowns), (nodes)
@@ -217,7 +212,7 @@ contains
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                node = model%domain%mesh%groups(fix%group)%nodes(k)
                if (is_released(constraint, i, node)) cycle
-               at = dofs%of(min(fix%field, AT_P_C), node)
+               at = model%dofs%of(min(fix%field, AT_P_C), node)
                if (at == 0) cycle
                if (fix%field == PRESCRIBED_P_A) air_by(node) = i
                if (fix%field /= PRESCRIBED_P_A) by(at) = i

@@ -109,13 +109,11 @@ contains
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
          if (size(run%constraint%added) > 0) call add_means(run, model%dofs, run%scheme, contact_force)
-         call book_step(model%domain, model%dofs, run%scheme, run%constraint, run%system%reaction, contact_force, &
-                        run%state, run%next, self%damping_stress, ledger)
+         call book_step(model, contact_force, run, self%damping_stress, ledger)
          call book_creation(run%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &
                             ledger)
          if (has_inertia(stage%kind)) call count_creation(stage%created_energy, ledger)
-         self%indicators = indicators_of(model, run%at%stage, run%scheme%dt, run%constraint%mass, run%state, &
-                                         run%next)
+         self%indicators = indicators_of(model, run)
          run%news%contact_work = ledger%contact
          if (.not. has_inertia(stage%kind)) return
          if (ledger%overdue < merge(1.0_wp, PATIENCE, run%news%last)) return

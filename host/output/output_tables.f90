@@ -15,7 +15,6 @@ module output_tables
    use run_observer, only: observer_t
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
-   use surface_forces, only: surface_forces_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -87,13 +86,12 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (is_open(self%contact)) then
-         write (self%contact%row, NUMBERS) contact_row(model, run%system%contacts, run%scheme%dt, run%state, &
-                                                       run%news%contact_work)
+         write (self%contact%row, NUMBERS) contact_row(model, run)
          call write_row(self%contact, fault)
       end if
       if (mod(run%at%step, model%stages(run%at%stage)%every) == 0 .or. run%news%last) then
          call write_history(self%history, model, run%state, fault)
-         if (fault%code == 0) call write_reactions(self, model, run, run%scheme%dt, fault)
+         if (fault%code == 0) call write_reactions(self, model, run, fault)
       end if
       call hand_over(self%history, fault)
       call hand_over(self%contact, fault)
@@ -113,7 +111,7 @@ contains
       self%reactions%bytes = 0
       name = trim(model%stages(run%at%stage)%name)
       call write_fields(self%folder, model%domain, name, run%state, fault)
-      if (fault%code == 0) call write_contact_nodes(self%folder, model, run%system%contacts, name, run%state, fault)
+      if (fault%code == 0) call write_contact_nodes(self%folder, model, run, fault)
    end subroutine stage_ends
 
    !> Closes the tables; the first that fails is reported. Fault EXIT_OUTPUT: a disk is full.
@@ -171,11 +169,10 @@ contains
 
    !> A row of reactions_STAGE.csv after a step. The file belongs to the stage: it begins with its first row, or goes on
    !> where it was at the checkpoint. Units: see reaction_row. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine write_reactions(self, model, run, dt, fault)
+   subroutine write_reactions(self, model, run, fault)
       type(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
-      real(wp), intent(in) :: dt   !< [s]
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: head, path
 
@@ -187,8 +184,7 @@ contains
             call open_table(path, head, self%reactions%bytes > 0, self%reactions, fault)
             if (fault%code /= 0) return
          end if
-         write (self%reactions%row, NUMBERS) reaction_row(model, stage, run%constraint, &
-                                                            run%system%reaction, run%state%time, dt)
+         write (self%reactions%row, NUMBERS) reaction_row(model, run)
          call write_row(self%reactions, fault)
       end associate
    end subroutine write_reactions
@@ -259,21 +255,19 @@ contains
 
    !> contact_STAGE.csv: slave nodes of the contacts that act in the stage. Units: see contact_nodes. Fault EXIT_OUTPUT:
    !> it cannot be written.
-   subroutine write_contact_nodes(folder, model, contacts, stage, state, fault)
+   subroutine write_contact_nodes(folder, model, run, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
-      class(surface_forces_t), allocatable, intent(in) :: contacts
-      character(*), intent(in) :: stage   !< Name of the stage.
-      type(model_state_t), intent(in) :: state
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: values(:, :)
       type(csv_t) :: table
       integer :: i
 
-      if (.not. allocated(contacts)) return
-      call contact_nodes(model, contacts, state, values)
-      call new_csv(folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure,shear', table, &
-                     fault)
+      if (.not. allocated(run%system%contacts)) return
+      call contact_nodes(model, run, values)
+      call new_csv(folder//'/contact_'//trim(model%stages(run%at%stage)%name)//'.csv', &
+                   'contact,r,z,weight,coverage,gap,pressure,shear', table, fault)
       do i = 1, size(values, 2)
          if (fault%code /= 0) exit
          write (table%row, NUMBERS) values(:, i)

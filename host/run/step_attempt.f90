@@ -90,8 +90,7 @@ contains
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
       run%scheme = scheme_of(stage, run, dt)
-      if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, model%dofs, run%scheme, run%state, &
-                                                                  run%constraint)
+      if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, run%scheme, run%state, run%constraint)
       call take_step(model%domain, model%dofs, run%solution_t)
       if (run%log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
@@ -166,8 +165,8 @@ contains
       integer :: i
 
       associate (c => run%constraint, until => run%state%time + dt)
-         c%load_0 = load_at(model, stage, model%dofs, run%state%time)
-         c%load_1 = load_at(model, stage, model%dofs, until)
+         c%load_0 = load_at(model, stage, run%state%time)
+         c%load_1 = load_at(model, stage, until)
          do i = 1, size(run%terms)
             if (fault%code == 0) call run%terms(i)%term%before_step(model, dt, run%solution_t, fault)
          end do
@@ -177,7 +176,7 @@ contains
             c%load_1 = c%load_1 - (1 - run%at%share_of(stage%duration, until))*run%at%sudden
          end if
       end associate
-      call constrain_step(model, stage, model%dofs, run%state%time + dt, run%at%x_start, run%constraint)
+      call constrain_step(model, stage, run%state%time + dt, run%at%x_start, run%constraint)
       do i = 1, size(run%terms)
          call run%terms(i)%term%prescribe(model, run%state%time + dt, run%solution_t)
       end do
@@ -192,7 +191,7 @@ contains
 
       if (any(model%fixes%acceleration)) then
          if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))
-         call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
+         call starting_accelerations(model, stage, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
                                      run%state%time, run%constraint%acceleration)
       end if
       call start_accelerations(model%domain, model%dofs, run%solution_t)

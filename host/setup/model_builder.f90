@@ -72,7 +72,7 @@ contains
       if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
-      call shape_loads(model, model%dofs)
+      call shape_loads(model)
    contains
       subroutine build(name)
          character(*), intent(in) :: name
