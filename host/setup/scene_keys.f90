@@ -81,7 +81,7 @@ contains
          ! What a group lacks is no fault of a list.
          fault = fault_t()
          call build_group(table, nothing, fault)
-         call declare_keys(table)
+         call declare_keys(table, nothing, fault)
       end do
       call move_alloc(table%keys, keys)
    end function keys_of_scenes
