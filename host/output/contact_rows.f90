@@ -79,10 +79,10 @@ contains
    !> Slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at the
    !> start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step. A
    !> state that a kernel refuses has none.
-   subroutine contact_nodes(model, run, table)
+   function contact_nodes(model, run) result(table)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run   !< It has contacts.
-      real(wp), allocatable, intent(out) :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
+      real(wp), allocatable :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
       type(contacts_t) :: trial
       real(wp), allocatable :: shear(:)
       integer :: c, i
@@ -104,5 +104,5 @@ contains
                             [8, size(table, 2) + size(shear)])
          end associate
       end do
-   end subroutine contact_nodes
+   end function contact_nodes
 end module contact_rows

@@ -14,7 +14,7 @@ module output_tables
    use reaction_rows, only: reaction_columns, reaction_row
    use run_observer, only: observer_t
    use run_state, only: run_t
-   use run_tables, only: open_table, exchange_table
+   use run_tables, only: open_table, exchange_table, write_table
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -111,7 +111,8 @@ contains
       self%reactions%bytes = 0
       name = trim(model%stages(run%at%stage)%name)
       call write_fields(self%folder, model%domain, name, run%state, fault)
-      if (fault%code == 0) call write_contact_nodes(self%folder, model, run, fault)
+      if (allocated(run%system%contacts)) call write_table(self%folder//'/contact_'//name//'.csv', &
+         'contact,r,z,weight,coverage,gap,pressure,shear', contact_nodes(model, run), fault)
    end subroutine stage_ends
 
    !> Closes the tables; the first that fails is reported. Fault EXIT_OUTPUT: a disk is full.
@@ -206,29 +207,18 @@ contains
       type(model_state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS, size(state%x, 2))
-      type(csv_t) :: table
-      integer :: i, e, g, p
+      integer :: i, e, g
 
       call all_pressures(domain, state, x)
-      call new_csv(folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
-      do i = 1, size(state%x, 2)
-         if (fault%code /= 0) exit
-         write (table%row, NUMBERS) domain%mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i)
-         call write_row(table, fault)
-      end do
-      call close_csv(table, fault)
-      if (fault%code /= 0) return
-      call new_csv(folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', table, fault)
-      do e = 1, size(domain%mesh%t6, 2)
-         do g = 1, domain%rule
-            if (fault%code /= 0) exit
-            p = (e - 1)*domain%rule + g
-            write (table%row, NUMBERS) domain%gauss(g, e)%x, domain%gauss(g, e)%weight, state%stress(1:4, p), &
-               state%e(p), state%s(p)
-            call write_row(table, fault)
-         end do
-      end do
-      call close_csv(table, fault)
+      call write_table(folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', &
+                       reshape([(domain%mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i), i=1, size(x, 2))], &
+                               [8, size(x, 2)]), fault)
+      associate (gauss => domain%gauss, n => domain%rule)
+         call write_table(folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', &
+                          reshape([((gauss(g, e)%x, gauss(g, e)%weight, state%stress(1:4, (e - 1)*n + g), &
+                                     state%e((e - 1)*n + g), state%s((e - 1)*n + g), g=1, n), e=1, size(gauss, 2))], &
+                                  [9, size(gauss)]), fault)
+      end associate
    end subroutine write_fields
 
    !> points.csv: the place of every point of the scene, and that of its stresses, the nearest quadrature point, both at
@@ -252,27 +242,4 @@ contains
       end do
       call close_csv(table, fault)
    end subroutine write_points
-
-   !> contact_STAGE.csv: slave nodes of the contacts that act in the stage. Units: see contact_nodes. Fault EXIT_OUTPUT:
-   !> it cannot be written.
-   subroutine write_contact_nodes(folder, model, run, fault)
-      character(*), intent(in) :: folder
-      type(model_t), intent(in) :: model
-      type(run_t), intent(in) :: run
-      type(fault_t), intent(inout) :: fault
-      real(wp), allocatable :: values(:, :)
-      type(csv_t) :: table
-      integer :: i
-
-      if (.not. allocated(run%system%contacts)) return
-      call contact_nodes(model, run, values)
-      call new_csv(folder//'/contact_'//trim(model%stages(run%at%stage)%name)//'.csv', &
-                   'contact,r,z,weight,coverage,gap,pressure,shear', table, fault)
-      do i = 1, size(values, 2)
-         if (fault%code /= 0) exit
-         write (table%row, NUMBERS) values(:, i)
-         call write_row(table, fault)
-      end do
-      call close_csv(table, fault)
-   end subroutine write_contact_nodes
 end module output_tables

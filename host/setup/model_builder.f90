@@ -20,8 +20,7 @@ module model_builder
    use region_builder, only: build_material
    use scene_keys, only: build_group
    use scene_types, only: scene_t, groups_named
-   use stage_builder, only: choose_schemes
-   use stage_histories, only: place_histories
+   use stage_builder, only: place_histories, choose_schemes
    use term_registry, only: build_terms
    use texts, only: whole
    !$ use omp_lib, only: omp_get_max_threads

@@ -4,7 +4,6 @@ module scene_reader
    use faults, only: fault_t, raise, EXIT_INPUT
    use namelists, only: group_t, read_groups
    use scene_fingerprint, only: fingerprint_of, hashes_of
-   use scene_tolerances, only: ask_key
    use scene_keys, only: check_keys
    use effect_switches, only: remove_effects
    use scene_names, only: check_names
@@ -16,19 +15,15 @@ module scene_reader
 contains
    !> Reads and checks a scene; a fault names file, line, value, range and the nearest name. Fault EXIT_INPUT: the file
    !> cannot be read, or a group, key or value is refused; EXIT_GROUP: a stage that nobody defines.
-   subroutine read_scene(file, scene, fault, step_tolerance, fineness, settings)
+   subroutine read_scene(file, scene, fault, settings)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene
       type(fault_t), intent(inout) :: fault
-      character(*), intent(in), optional :: step_tolerance   !< In place of that of the scene; empty: none.
-      character(*), intent(in), optional :: fineness         !< Of the mesh, likewise.
-      character(*), intent(in), optional :: settings(:)      !< Other keys, as GROUP.KEY=VALUE.
+      character(*), intent(in), optional :: settings(:)   !< Keys in place of those of the scene, as GROUP.KEY=VALUE.
       type(group_t), allocatable :: groups(:)
 
       call read_groups(file, groups, fault)
       if (present(settings) .and. fault%code == 0) call apply_settings(settings, groups, fault)
-      if (present(step_tolerance) .and. fault%code == 0) call ask_key('scene', 'step_tolerance', step_tolerance, groups)
-      if (present(fineness) .and. fault%code == 0) call ask_key('mesh', 'fineness', fineness, groups)
       if (fault%code == 0) call check_keys(groups, fault)
       if (fault%code == 0) call check_names(groups, fault)
       if (fault%code == 0) call check_counts(file, groups, fault)
