@@ -36,8 +36,10 @@ contains
    end function contact_columns
 
    !> Row of contact.csv: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
-   !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every coordinate of a plate
-   !> its value [m], rate [m/s], acceleration [m/s2] and load [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
+   !> of every contact vertical force on the master, upwards [kN], energy of the penalty [kJ], area of the active nodes
+   !> [m2], active nodes, sealed nodes, friction on the master along the slave's tangent, summed up [kN], nodes whose
+   !> friction is at its limit; of every coordinate of a plate its value [m], rate [m/s], acceleration [m/s2] and load
+   !> [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
    function contact_row(model, run) result(row)
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run   !< After a step that was taken over.
@@ -71,8 +73,14 @@ contains
          type(contact_interface_t), intent(in) :: t
          real(wp) :: list(7)
 
-         list = [t%thrust, t%energy, t%area, real(t%active, wp), real(t%sealed, wp), t%drag, &
-                 real(t%sliding, wp)]
+         list = 0.0_wp
+         list(5) = t%sealed
+         if (.not. t%acts) return
+         associate (r => t%result)
+            list(:4) = [sum(r%force(2:2*t%geometry%slave_nodes:2)), r%energy, sum(r%weight, mask=r%active), &
+                        real(count(r%active), wp)]
+            list(6:) = [dot_product(r%weight, r%traction), real(count(r%side /= 0), wp)]
+         end associate
       end function values
    end function contact_row
 
