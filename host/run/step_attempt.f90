@@ -189,11 +189,8 @@ contains
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (any(model%fixes%acceleration)) then
-         if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))
-         call starting_accelerations(model, stage, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
-                                     run%state%time, run%constraint%acceleration)
-      end if
+      if (any(model%fixes%acceleration)) call starting_accelerations(model, stage, make_scheme(stage%kind, &
+         stage%rho_inf, stage%dt), run%state%time, run%constraint)
       call start_accelerations(model%domain, model%dofs, run%solution_t)
       if (run%log%outcome /= CONVERGED) call explain_failure(model, stage, run, 0.0_wp, fault)
    end subroutine first_accelerations
