@@ -115,7 +115,7 @@ contains
 
    !> Reads a decimal number; anything that is not entirely one ('1.2.3', '1e999', 'nan') is refused. value is then 0
    !> and good false.
-   subroutine read_number(text, value, good)
+   pure subroutine read_number(text, value, good)
       character(*), intent(in) :: text
       real(wp), intent(out) :: value
       logical, intent(out) :: good

@@ -16,7 +16,6 @@ module host_options
       character(:), allocatable :: scene             !< File of the scene.
       character(:), allocatable :: folder            !< Folder of the results.
       character(:), allocatable :: restart           !< Checkpoint to go on from; blank: none.
-      character(:), allocatable :: step_tolerance, fineness   !< Values in place of those of the scene; blank: none.
       character(WORD_LENGTH), allocatable :: set(:)  !< Keys and their values in place of those of the scene.
       logical :: quiet = .false.                     !< Errors and warnings only are printed.
       logical :: verbose = .false.                   !< Memory, times and counters of the run are printed.
@@ -63,12 +62,18 @@ contains
          options%folder = 'output'
          if (options%restart /= '') options%folder = folder_of(options%restart)
       end if
-      options%step_tolerance = option_value(words, '--step-tolerance')
-      options%fineness = option_value(words, '--fineness')
       options%set = option_values(words, '--set')
+      call set('scene.step_tolerance', option_value(words, '--step-tolerance'))
+      call set('mesh.fineness', option_value(words, '--fineness'))
       options%quiet = option_given(words, '--quiet')
       options%verbose = option_given(words, '--verbose')
       options%only_check = option_given(words, '--check')
+   contains
+      subroutine set(key, value)
+         character(*), intent(in) :: key, value   !< No value: the key stays.
+
+         if (value /= '') options%set = [character(WORD_LENGTH) :: options%set, key//'='//value]
+      end subroutine set
    end subroutine read_options
 
    subroutine print_help()

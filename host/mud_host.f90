@@ -29,8 +29,7 @@ program mud_host
    call apply_process_settings()
    call read_options(options, fault)
    started = clock()
-   if (fault%code == 0) call read_scene(options%scene, scene, fault, options%step_tolerance, options%fineness, &
-                                        options%set)
+   if (fault%code == 0) call read_scene(options%scene, scene, fault, options%set)
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
    if (fault%code == 0) call report_start(scene, model, run, options%quiet, options%verbose, options%only_check)

@@ -3,7 +3,7 @@
 !> forces that tangential tractions exert, and the law of a node: stick on a penalty, slip at the limit.
 !> docs/theory/contact.md section 9.
 module contact_friction
-   use contact_mortar, only: overlap_t, point_t, pair_points, hats, hat_slopes, LARGEST_POINTS
+   use contact_mortar, only: point_t, hats, hat_slopes
    use contact_response, only: response_t, add_work
    use contact_types, only: contact_options_t
    use kinds, only: wp
@@ -80,22 +80,18 @@ contains
 
    !> Parts of a pair in weight times slip of the three slave nodes, their derivatives, and drag(:, A) = int M_A (t N_s,
    !> -t N_m) 2 pi r ds, the nodal forces of a unit traction at node A; weight times slip is drag times the way of the
-   !> nodes. The pair must be one whose normals hit, see pair_gaps. docs/theory/contact.md section 9.
-   pure subroutine pair_slips(x, dx, overlap, axisymmetric, weighted_slip, d_weighted_slip, drag)
-      real(wp), intent(in) :: x(2, 6), dx(2, 6)   !< Local coordinates and way since the start of the step [m].
-      type(overlap_t), intent(in) :: overlap
-      logical, intent(in) :: axisymmetric
+   !> nodes. docs/theory/contact.md section 9.
+   pure subroutine pair_slips(points, dx, weighted_slip, d_weighted_slip, drag)
+      type(point_t), intent(in) :: points(:)
+      real(wp), intent(in) :: dx(2, 6)   !< Way of the nodes since the start of the step [m].
       real(wp), intent(out) :: weighted_slip(3), d_weighted_slip(12, 3), drag(12, 3)
-      type(point_t) :: points(LARGEST_POINTS)
-      real(wp) :: m(3), dm(3), of_point(12), d_way(12), way(2), bend(2, 2), along, missed
-      integer :: n, k, a, i
+      real(wp) :: m(3), dm(3), of_point(12), d_way(12), way(2), bend(2, 2), along
+      integer :: k, a, i
 
       weighted_slip = 0.0_wp
       d_weighted_slip = 0.0_wp
       drag = 0.0_wp
-      call pair_points(x, overlap, .false., axisymmetric, points, n, missed)
-      if (missed > 0.0_wp) return
-      do k = 1, n
+      do k = 1, size(points)
          associate (p => points(k))
             m = hats(p%s)
             dm = hat_slopes(p%s)
@@ -121,21 +117,18 @@ contains
 
    !> Forces of a pair and, if wanted, their stiffness, the tractions of its slave nodes held.
    !> docs/theory/contact.md section 9.
-   pure subroutine drag_response(x, overlap, axisymmetric, traction, with_stiffness, response)
-      real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
-      type(overlap_t), intent(in) :: overlap
-      logical, intent(in) :: axisymmetric, with_stiffness
+   pure subroutine drag_response(points, traction, with_stiffness, response)
+      type(point_t), intent(in) :: points(:)
       real(wp), intent(in) :: traction(3)   !< [kPa]
+      logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
-      type(point_t) :: p(LARGEST_POINTS)
-      real(wp) :: missed
-      integer :: n, k
+      integer :: k
 
-      call pair_points(x, overlap, .false., axisymmetric, p, n, missed)
-      if (missed > 0.0_wp) return
-      do k = 1, n
-         call add_work(p(k), p(k)%t, p(k)%d_t, dot_product(hats(p(k)%s), traction), &
-                       dot_product(hat_slopes(p(k)%s), traction)*p(k)%d_s, with_stiffness, response)
+      do k = 1, size(points)
+         associate (p => points(k))
+            call add_work(p, p%t, p%d_t, dot_product(hats(p%s), traction), &
+                          dot_product(hat_slopes(p%s), traction)*p%d_s, with_stiffness, response)
+         end associate
       end do
    end subroutine drag_response
 end module contact_friction

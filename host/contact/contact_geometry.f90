@@ -3,9 +3,8 @@
 !> do. docs/theory/contact.md section 2.
 module contact_geometry
    use contact_projection, only: edge_of, least_stretch
-   use contact_types, only: NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, is_finite, &
-                            CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
-                            CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE
+   use contact_types, only: contact_options_t, contact_status_t, is_finite, CONTACT_OK, CONTACT_BAD_EDGE, &
+                            CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE
    use kinds, only: wp
    implicit none (type, external)
    private
@@ -25,9 +24,8 @@ module contact_geometry
    end type contact_geometry_t
 contains
    !> Prepares two surfaces: (3, edges) node numbers of each in the order start, end, middle, the body on the
-   !> left. docs/theory/contact.md section 2. status: CONTACT_OK; CONTACT_BAD_OPTION, a penalty that is not > 0, a
-   !> search radius < 0, one that is not finite, or an unknown kind; CONTACT_BAD_EDGE, a node that does not exist, is in
-   !> more than two edges, or in two and the middle of one.
+   !> left. docs/theory/contact.md section 2. status: CONTACT_OK; CONTACT_BAD_EDGE, a node that does not
+   !> exist, is in more than two edges, or in two and the middle of one.
    pure subroutine contact_prepare(geometry, slave_nodes, slave_edges, master_nodes, master_edges, options, status)
       type(contact_geometry_t), intent(out) :: geometry
       integer, intent(in) :: slave_nodes, master_nodes   !< Numbers of nodes of both surfaces.
@@ -36,8 +34,6 @@ contains
       type(contact_status_t), intent(out) :: status
       integer, allocatable :: edges_of(:, :)
 
-      call check_options(options, status)
-      if (status%code /= CONTACT_OK) return
       call list_edges(slave_edges, slave_nodes, .false., geometry%edges_of, status)
       if (status%code /= CONTACT_OK) return
       call list_edges(master_edges, master_nodes, .true., edges_of, status)
@@ -49,23 +45,6 @@ contains
       geometry%master_edges = master_edges
       geometry%free = edges_of(2, :) == 0
    end subroutine contact_prepare
-
-   pure subroutine check_options(options, status)
-      type(contact_options_t), intent(in) :: options
-      type(contact_status_t), intent(out) :: status
-      real(wp) :: numbers(5)
-      integer :: i
-
-      numbers = [options%penalty, options%search_radius, options%friction, options%cohesion, options%tangential_penalty]
-      do i = size(numbers), 1, -1
-         if (.not. is_finite(numbers(i))) status = contact_status_t(CONTACT_BAD_OPTION, value=numbers(i))
-         if (status%code /= CONTACT_OK) return
-         if (numbers(i) < 0.0_wp) status = contact_status_t(CONTACT_BAD_OPTION, value=numbers(i))
-      end do
-      if (.not. options%penalty > 0.0_wp) status = contact_status_t(CONTACT_BAD_OPTION, value=options%penalty)
-      if (all(options%gap /= [NODAL_GAP, POINTWISE_GAP, COMBINED_GAP])) &
-         status = contact_status_t(CONTACT_BAD_OPTION, value=real(options%gap, wp))
-   end subroutine check_options
 
    !> The edges of every node; at most two, of a middle node one.
    pure subroutine list_edges(edges, nodes, master, edges_of, status)
@@ -101,9 +80,9 @@ contains
       end do
    end subroutine list_edges
 
-   !> Refuses present coordinates (2, nodes) [m] of both surfaces that are not finite, not as many as prepared, of
+   !> Refuses present coordinates (2, nodes) [m] of both surfaces that are not finite, of
    !> slave nodes left of the axis, or whose edges are folded: status CONTACT_OK, or the first that is wrong.
-   !> CONTACT_BAD_SIZE; CONTACT_NOT_FINITE; CONTACT_DISTORTED_EDGE; CONTACT_BAD_RADIUS, a slave node at r < 0 in axial
+   !> CONTACT_NOT_FINITE; CONTACT_DISTORTED_EDGE; CONTACT_BAD_RADIUS, a slave node at r < 0 in axial
    !> symmetry.
    pure subroutine check_coordinates(geometry, slave_x, master_x, status)
       type(contact_geometry_t), intent(in) :: geometry
@@ -112,12 +91,6 @@ contains
       real(wp) :: rounding   !< A support that holds a node on the axis may leave so much [m].
       integer :: i
 
-      if (size(slave_x, 2) /= geometry%slave_nodes) then
-         status = contact_status_t(CONTACT_BAD_SIZE, geometry%slave_nodes, .false., real(size(slave_x, 2), wp))
-      else if (size(master_x, 2) /= geometry%master_nodes) then
-         status = contact_status_t(CONTACT_BAD_SIZE, geometry%master_nodes, .true., real(size(master_x, 2), wp))
-      end if
-      if (status%code /= CONTACT_OK) return
       call check_surface(slave_x, geometry%slave_edges, .false., status)
       if (status%code /= CONTACT_OK) return
       call check_surface(master_x, geometry%master_edges, .true., status)

@@ -54,13 +54,6 @@ module contact_interfaces
       integer, allocatable :: unknown(:)    !< Unknown of the equations for every unknown of the kernel, or of slave and
                                             !< plate; 0: none.
       logical :: acts = .true.              !< In this stage.
-      ! Outcome of the last evaluation within a step.
-      real(wp) :: thrust = 0.0_wp           !< Vertical force on the master, upwards [kN].
-      real(wp) :: energy = 0.0_wp           !< Energy of the penalty [kJ].
-      real(wp) :: area = 0.0_wp             !< Area of the active nodes [m2].
-      integer :: active = 0
-      integer :: sliding = 0                !< Nodes whose friction is at its limit.
-      real(wp) :: drag = 0.0_wp             !< Friction on the master along the slave's tangent, summed up [kN].
       integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
    end type contact_interface_t
 
@@ -200,32 +193,21 @@ contains
       integer :: i
 
       good = .true.
+      self%active = 0
       rounding = 0.0_wp
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
-            t%active = 0
-            t%thrust = 0.0_wp
-            t%energy = 0.0_wp
-            t%area = 0.0_wp
-            t%sliding = 0
-            t%drag = 0.0_wp
             if (.not. t%acts) cycle
             call probe_one(t, x, with_slopes, t%result, self%status)
             good = self%status%code == CONTACT_OK
             if (.not. good) return
             if (allocated(t%plate%motion)) call gather_on_plate(t%geometry, t%result, t%plate%motion, &
                                                                  t%master%x0, motion_of(t%plate, x), t%on_plate)
-            t%active = count(t%result%active)
-            t%thrust = sum(t%result%force(2:2*t%geometry%slave_nodes:2))
-            t%energy = t%result%energy
+            self%active = self%active + count(t%result%active)
             if (allocated(t%spring)) rounding(i) = ROUNDINGS*epsilon(1.0_wp)*norm2(spread(t%spring, 1, DISPLACEMENTS) &
                                                                               *x(:DISPLACEMENTS, t%slave%node))
-            t%area = sum(t%result%weight, mask=t%result%active)
-            t%sliding = count(t%result%side /= 0)
-            t%drag = dot_product(t%result%weight, t%result%traction)
          end associate
       end do
-      self%active = sum(self%interfaces%active)
       self%turns = any([(self%interfaces(i)%acts .and. self%interfaces(i)%result%turns, i=1, size(self%interfaces))])
       self%rounding = norm2(rounding)
    end function evaluate

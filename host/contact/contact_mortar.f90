@@ -262,26 +262,20 @@ contains
 
    !> Parts of a pair of edges at the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
    !> derivatives, and push(:, A) = int M (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
-   !> docs/theory/contact.md section 2.3. `missed` as of integration_point; where it is > 0 the rest is of no use.
-   pure subroutine pair_gaps(x, overlap, axisymmetric, weight, weighted_gap, d_weight, d_weighted_gap, push, missed)
-      real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
-      type(overlap_t), intent(in) :: overlap
-      logical, intent(in) :: axisymmetric
+   !> docs/theory/contact.md section 2.3.
+   pure subroutine pair_gaps(points, weight, weighted_gap, d_weight, d_weighted_gap, push)
+      type(point_t), intent(in) :: points(:)
       real(wp), intent(out) :: weight(3), weighted_gap(3)                             !< [m2], [m3] (plane: m, m2)
       real(wp), intent(out) :: d_weight(12, 3), d_weighted_gap(12, 3), push(12, 3)
-      real(wp), intent(out) :: missed
-      type(point_t) :: points(LARGEST_POINTS)
       real(wp) :: m(3), dm(3), of_point(12)
-      integer :: n, k, a
+      integer :: k, a
 
       weight = 0.0_wp
       weighted_gap = 0.0_wp
       d_weight = 0.0_wp
       d_weighted_gap = 0.0_wp
       push = 0.0_wp
-      call pair_points(x, overlap, .false., axisymmetric, points, n, missed)
-      if (missed > 0.0_wp) return
-      do k = 1, n
+      do k = 1, size(points)
          associate (p => points(k))
             m = hats(p%s)
             dm = hat_slopes(p%s)

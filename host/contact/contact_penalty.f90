@@ -6,7 +6,8 @@ module contact_penalty
    use contact_friction, only: friction_t, traction_t, pair_slips, drag_response, traction_at, &
                                tangential_stiffness, touching_share
    use contact_geometry, only: contact_geometry_t, check_coordinates
-   use contact_mortar, only: overlap_t, find_overlap, pair_gaps, penetration, hats, POINTS, POSITION, SHARE
+   use contact_mortar, only: overlap_t, point_t, find_overlap, pair_points, pair_gaps, penetration, hats, POINTS, &
+                             POSITION, SHARE, LARGEST_POINTS
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, nodal_forces_t, pair_response, new_forces, make_room, add_column
    use contact_search, only: search_t, prepare_search, find_candidates
@@ -22,7 +23,10 @@ module contact_penalty
    !> A slave edge with a master edge opposite.
    type :: pair_t
       integer :: slave = 0, master = 0
+      real(wp) :: x(2, 6) = 0.0_wp                   !< Local coordinates [m].
       type(overlap_t) :: overlap
+      integer :: n = 0
+      type(point_t) :: points(LARGEST_POINTS)        !< Integration points, the first n.
       real(wp) :: d_weight(12, 3) = 0.0_wp, d_weighted_gap(12, 3) = 0.0_wp, push(12, 3) = 0.0_wp
       real(wp) :: d_weighted_slip(12, 3) = 0.0_wp, drag(12, 3) = 0.0_wp   !< With friction.
    end type pair_t
@@ -112,9 +116,9 @@ contains
       call find_whole(geometry, slave_x, result)
       call find_gaps(geometry, slave_x, master_x, work, result, status)
       if (status%code /= CONTACT_OK) return
-      call respond(geometry, slave_x, master_x, with_tangent, work, result, status)
+      call respond(geometry, with_tangent, work, result, status)
       if (status%code /= CONTACT_OK) return
-      if (present(friction)) call add_friction(geometry, slave_x, master_x, with_tangent, friction, work, result)
+      if (present(friction)) call add_friction(geometry, with_tangent, friction, work, result)
       result%active = result%pressure > 0.0_wp
    end subroutine contact_evaluate
 
@@ -152,7 +156,7 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
-      real(wp) :: weight(3), weighted_gap(3), x(2, 6), missed
+      real(wp) :: weight(3), weighted_gap(3), missed
       integer :: e, c, n
 
       result%weight = 0.0_wp
@@ -163,18 +167,19 @@ contains
          do c = work%search%first(e), work%search%first(e + 1) - 1
             if (n == size(work%pair)) call grow_pairs(work%pair)
             associate (pair => work%pair(n + 1), master => work%search%candidate(c))
-               x = of_edges(geometry, e, master, slave_x, master_x)
-               call find_overlap(x, geometry%free(geometry%master_edges(1:2, master)), pair%overlap)
+               pair%x = of_edges(geometry, e, master, slave_x, master_x)
+               call find_overlap(pair%x, geometry%free(geometry%master_edges(1:2, master)), pair%overlap)
                if (pair%overlap%segments == 0) cycle
                n = n + 1
                pair%slave = e
                pair%master = master
-               call pair_gaps(x, pair%overlap, geometry%options%axisymmetric, weight, weighted_gap, pair%d_weight, &
-                              pair%d_weighted_gap, pair%push, missed)
+               call pair_points(pair%x, pair%overlap, .false., geometry%options%axisymmetric, pair%points, pair%n, &
+                                missed)
                if (missed > 0.0_wp) then
                   status = contact_status_t(CONTACT_NO_PROJECTION, e, .false., missed)
                   return
                end if
+               call pair_gaps(pair%points(:pair%n), weight, weighted_gap, pair%d_weight, pair%d_weighted_gap, pair%push)
             end associate
             associate (nodes => geometry%slave_edges(:, e))
                result%weight(nodes) = result%weight(nodes) + weight
@@ -192,15 +197,14 @@ contains
    end subroutine find_gaps
 
    !> Pressures, energy, forces and tangent.
-   pure subroutine respond(geometry, slave_x, master_x, with_tangent, work, result, status)
+   pure subroutine respond(geometry, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
-      real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
       logical, intent(in) :: with_tangent
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
       type(contact_options_t) :: nodal, pointwise
-      real(wp) :: x(2, 6), energy
+      real(wp) :: energy
       logical :: pressed
       integer :: i
 
@@ -214,16 +218,15 @@ contains
       end if
       do i = 1, result%pairs
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
-            x = of_edges(geometry, pair%slave, pair%master, slave_x, master_x)
             energy = result%energy
             pressed = any(result%pressure(nodes) > 0.0_wp)
-            if (pressed) call add_pair(geometry, nodal, pair, x, with_tangent, work%load, result, status)
+            if (pressed) call add_pair(geometry, nodal, pair, with_tangent, work%load, result, status)
             if (pointwise%penalty > 0.0_wp) &
-               call add_pair(geometry, pointwise, pair, x, with_tangent, work%load, result, status)
+               call add_pair(geometry, pointwise, pair, with_tangent, work%load, result, status)
             if (status%code /= CONTACT_OK) return
             ! Combined gaps press wherever they look, and they look at the ends.
             if (.not. (pressed .or. result%energy > energy .or. geometry%options%gap == COMBINED_GAP)) &
-               call note_unpressed(penetration(x, pair%overlap), x, result)
+               call note_unpressed(penetration(pair%x, pair%overlap), pair%x, result)
          end associate
       end do
       if (with_tangent) then
@@ -237,25 +240,22 @@ contains
    end subroutine respond
 
    !> Friction: slips and tractions of the slave nodes, their forces and tangent. docs/theory/contact.md section 9.
-   pure subroutine add_friction(geometry, slave_x, master_x, with_tangent, friction, work, result)
+   pure subroutine add_friction(geometry, with_tangent, friction, work, result)
       type(contact_geometry_t), intent(in) :: geometry
-      real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
       logical, intent(in) :: with_tangent
       type(friction_t), intent(in) :: friction
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(traction_t) :: t(geometry%slave_nodes)
       type(response_t) :: response
-      real(wp) :: x(2, 6), dx(2, 6), weighted_slip(3)
+      real(wp) :: dx(2, 6), weighted_slip(3)
       integer :: i
 
       result%slip = 0.0_wp
       do i = 1, result%pairs
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
-            x = of_edges(geometry, pair%slave, pair%master, slave_x, master_x)
             dx = of_edges(geometry, pair%slave, pair%master, friction%slave_dx, friction%master_dx)
-            call pair_slips(x, dx, pair%overlap, geometry%options%axisymmetric, weighted_slip, pair%d_weighted_slip, &
-                            pair%drag)
+            call pair_slips(pair%points(:pair%n), dx, weighted_slip, pair%d_weighted_slip, pair%drag)
             result%slip(nodes) = result%slip(nodes) + weighted_slip
          end associate
       end do
@@ -270,9 +270,8 @@ contains
       do i = 1, result%pairs
          associate (pair => work%pair(i))
             if (.not. any(abs(result%traction(geometry%slave_edges(:, pair%slave))) > 0.0_wp)) cycle
-            x = of_edges(geometry, pair%slave, pair%master, slave_x, master_x)
-            call drag_response(x, pair%overlap, geometry%options%axisymmetric, &
-                               result%traction(geometry%slave_edges(:, pair%slave)), with_tangent, response)
+            call drag_response(pair%points(:pair%n), result%traction(geometry%slave_edges(:, pair%slave)), &
+                               with_tangent, response)
             call add_response(unknowns_of(geometry, pair%slave, pair%master), response, with_tangent, result)
          end associate
       end do
@@ -302,27 +301,32 @@ contains
    end function slid_work
 
    !> Adds the parts of a pair to forces, energy and tangent.
-   pure subroutine add_pair(geometry, options, pair, x, with_tangent, work, result, status)
+   pure subroutine add_pair(geometry, options, pair, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_options_t), intent(in) :: options   !< Options of the nodal or of the pointwise form.
       type(pair_t), intent(in) :: pair
-      real(wp), intent(in) :: x(2, 6)                  !< Local coordinates [m].
       logical, intent(in) :: with_tangent
       real(wp), intent(inout) :: work(:)               !< int M_A p 2 pi r dGamma [kN]
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(inout) :: status
       type(response_t) :: response
+      type(point_t) :: ends(LARGEST_POINTS)
       real(wp) :: missed
-      logical :: at_ends, acts
+      integer :: n
+      logical :: acts
 
       if (status%code /= CONTACT_OK) return
       associate (nodes => geometry%slave_edges(:, pair%slave))
-         ! A corner lies at the end of a segment, where the rule of the pressures does not look.
-         at_ends = geometry%options%gap == COMBINED_GAP .and. options%gap == POINTWISE_GAP
-         call pair_response(x, pair%overlap, options, at_ends, result%pressure(nodes), with_tangent, response, missed)
-         if (missed > 0.0_wp) then
-            status = contact_status_t(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
-            return
+         if (geometry%options%gap == COMBINED_GAP .and. options%gap == POINTWISE_GAP) then
+            ! A corner lies at the end of a segment, where the rule of the pressures does not look.
+            call pair_points(pair%x, pair%overlap, .true., options%axisymmetric, ends, n, missed)
+            if (missed > 0.0_wp) then
+               status = contact_status_t(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
+               return
+            end if
+            call pair_response(ends(:n), options, result%pressure(nodes), with_tangent, response)
+         else
+            call pair_response(pair%points(:pair%n), options, result%pressure(nodes), with_tangent, response)
          end if
          acts = .true.
          if (options%gap == POINTWISE_GAP) then

@@ -5,7 +5,7 @@
 !>   pointwise gaps  p = eps <-g>.
 !> docs/theory/contact.md section 3.
 module contact_response
-   use contact_mortar, only: overlap_t, point_t, pair_points, hats, hat_slopes, LARGEST_POINTS
+   use contact_mortar, only: point_t, hats, hat_slopes
    use contact_types, only: contact_options_t, NODAL_GAP
    use kinds, only: wp
    implicit none (type, external)
@@ -69,25 +69,18 @@ contains
       end do
    end subroutine add_column
 
-   !> Forces (12) and, if wanted, stiffness (12, 12) of a pair of edges in local coordinates; `missed` is the largest
-   !> share of the master edge by which a normal misses it. docs/theory/contact.md section 3. Where `missed` > 0 the
-   !> response is of no use.
-   pure subroutine pair_response(x, overlap, options, at_ends, pressure, with_stiffness, response, missed)
-      real(wp), intent(in) :: x(2, 6)                   !< Local coordinates as in contact_mortar [m].
-      type(overlap_t), intent(in) :: overlap
+   !> Forces (12) and, if wanted, stiffness (12, 12) of a pair of edges in local coordinates. docs/theory/contact.md
+   !> section 3.
+   pure subroutine pair_response(points, options, pressure, with_stiffness, response)
+      type(point_t), intent(in) :: points(:)
       type(contact_options_t), intent(in) :: options    !< Options of the nodal or the pointwise form.
-      logical, intent(in) :: at_ends                    !< Points at the ends of segments too.
       real(wp), intent(in) :: pressure(3)   !< Pressures of the slave nodes [kPa]; not used by the pointwise form.
       logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
-      real(wp), intent(out) :: missed   !< [-]
-      type(point_t) :: points(LARGEST_POINTS)
       real(wp) :: at_point, d_at_point(12), gap, d_nu(2, 12)
-      integer :: n, k
+      integer :: k
 
-      call pair_points(x, overlap, at_ends, options%axisymmetric, points, n, missed)
-      if (missed > 0.0_wp) return
-      do k = 1, n
+      do k = 1, size(points)
          associate (p => points(k))
             if (options%gap == NODAL_GAP) then
                at_point = dot_product(hats(p%s), pressure)

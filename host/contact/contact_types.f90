@@ -7,8 +7,8 @@ module contact_types
    private
    public :: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
    public :: contact_options_t, has_friction, contact_status_t, contact_message, is_finite
-   public :: CONTACT_OK, CONTACT_BAD_OPTION, CONTACT_BAD_EDGE, CONTACT_BAD_SIZE, CONTACT_NOT_FINITE, &
-             CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, CONTACT_NO_PROJECTION
+   public :: CONTACT_OK, CONTACT_BAD_EDGE, CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, &
+             CONTACT_NO_PROJECTION
 
    real(wp), parameter :: TWO_PI = 2.0_wp*PI
 
@@ -18,10 +18,7 @@ module contact_types
    integer, parameter :: COMBINED_GAP = 3     !< Half the penalty on each: smooth pressures, and no corner gets through.
 
    integer, parameter :: CONTACT_OK = 0
-   ! Negative: the caller's mistake.
-   integer, parameter :: CONTACT_BAD_OPTION = -1      !< Penalty, search radius or a kind is out of its range.
-   integer, parameter :: CONTACT_BAD_EDGE = -2        !< An edge names a node that is not there or is used too often.
-   integer, parameter :: CONTACT_BAD_SIZE = -3        !< Coordinates of another number of nodes than prepared.
+   integer, parameter :: CONTACT_BAD_EDGE = -1        !< An edge names a node that is not there or is used too often.
    ! Positive: a configuration that a smaller step may avoid.
    integer, parameter :: CONTACT_NOT_FINITE = 1       !< A coordinate is NaN or infinite.
    integer, parameter :: CONTACT_BAD_RADIUS = 2       !< A slave node lies at a negative radius.
@@ -64,24 +61,13 @@ contains
 
       side = merge('master', 'slave ', status%master)
       write (number, '(i0)') status%index
-      if (is_finite(status%value)) then
-         write (value, '(es13.6)') status%value
-      else
-         value = 'not finite'
-      end if
+      write (value, '(es13.6)') status%value
       select case (status%code)
       case (CONTACT_OK)
          text = 'contact: no fault'
-      case (CONTACT_BAD_OPTION)
-         text = 'contact: an option has the value '//trim(adjustl(value))//': the penalty must be finite and > 0, '// &
-                'the search radius, friction, cohesion and tangential penalty finite and >= 0, gap one of '// &
-                'the named kinds'
       case (CONTACT_BAD_EDGE)
          text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface names node '//trim(adjustl(value))// &
                 ': it must be one of the surface, in at most two edges, and a middle node in one'
-      case (CONTACT_BAD_SIZE)
-         text = 'contact: '//trim(adjustl(value))//' nodes of the '//trim(side)//' surface were given, '// &
-                trim(number)//' were prepared: prepare the contact again after a change of mesh'
       case (CONTACT_NOT_FINITE)
          text = 'contact: node '//trim(number)//' of the '//trim(side)//' surface has a coordinate that is not '// &
                 'finite: cut the step'

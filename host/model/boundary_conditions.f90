@@ -18,24 +18,23 @@ module boundary_conditions
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
 contains
    !> Nothing prescribed, nothing loaded; plates have their mass. Extents: see constraint_t.
-   function new_constraint(model, dofs) result(constraint)
+   function new_constraint(model) result(constraint)
       type(model_t), intent(in) :: model
-      type(dofs_t), intent(in) :: dofs
       type(constraint_t) :: constraint
-      integer :: i, nodes
+      integer :: i
 
-      nodes = size(model%domain%mesh%x, 2)
-      allocate (constraint%fixed(dofs%n), constraint%limited(dofs%n), source=.false.)
-      allocate (constraint%limited_by(dofs%n), constraint%releases(dofs%n), constraint%body(dofs%n), source=0)
-      allocate (constraint%air(nodes), source=.false.)
-      allocate (constraint%target(dofs%n), constraint%load_0(dofs%n), constraint%load_1(dofs%n), &
-                constraint%rain_0(dofs%n), constraint%rain_1(dofs%n), constraint%offset(dofs%n), &
-                constraint%mass(dofs%n), source=0.0_wp)
-      allocate (constraint%air_target(nodes), source=0.0_wp)
+      associate (n => model%dofs%n, nodes => size(model%domain%mesh%x, 2))
+         allocate (constraint%fixed(n), constraint%limited(n), source=.false.)
+         allocate (constraint%limited_by(n), constraint%releases(n), constraint%body(n), source=0)
+         allocate (constraint%air(nodes), source=.false.)
+         allocate (constraint%target(n), constraint%load_0(n), constraint%load_1(n), constraint%rain_0(n), &
+                   constraint%rain_1(n), constraint%offset(n), constraint%mass(n), source=0.0_wp)
+         allocate (constraint%air_target(nodes), source=0.0_wp)
+      end associate
       allocate (constraint%linear(0), constraint%added(0))
       do i = 1, size(model%plates)
          ! Plates whose boundaries a &tie joins have one unknown.
-         associate (of => model%plates(i)%coordinates, at => unknowns_of(model%plates(i), dofs))
+         associate (of => model%plates(i)%coordinates, at => unknowns_of(model%plates(i), model%dofs))
             constraint%mass(at) = constraint%mass(at) + of%mass/of%unit**2
             constraint%body(at) = i
          end associate
@@ -44,41 +43,35 @@ contains
 
    !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
    !> docs/theory/host.md sections 3.5, 7.1 and 7.7. Accelerations: see follow_accelerations.
-   subroutine constrain_step(model, stage, dofs, time, x_start, constraint)
+   subroutine constrain_step(model, stage, time, x_start, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: time, x_start(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa].
       type(constraint_t), intent(inout) :: constraint
-      real(wp) :: value, factor
-      integer :: i, k, node, at
+      integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i
+      real(wp) :: factors(size(model%fixes))
 
-      constraint%fixed = .false.
-      constraint%air = .false.
+      call prescribing_fixes(model, stage, constraint, time, by, air_by)
+      factors = [(factor_at(model, model%fixes(i)%amplitude, time), i=1, size(factors))]
+      constraint%fixed = by > 0
+      constraint%air = air_by > 0
       constraint%limited = .false.
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i))
-            if (.not. acts(fix, stage, time) .or. fix%limits) cycle
-            factor = factor_at(model, fix%amplitude, time)
-            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
-               node = model%domain%mesh%groups(fix%group)%nodes(k)
-               if (is_released(constraint, i, node)) cycle
-               value = value_of(fix, model%domain%mesh%x(2, node), factor)
-               if (fix%field == PRESCRIBED_P_A) then
-                  if (dofs%of(AT_P_C, node) == 0) cycle
-                  constraint%air(node) = .true.
-                  constraint%air_target(node) = value
-                  if (fix%hold) constraint%air_target(node) = x_start(AT_P_W, node) + x_start(AT_P_C, node)
-               else
-                  at = dofs%of(fix%field, node)
-                  if (at == 0) cycle
-                  constraint%fixed(at) = .true.
-                  constraint%target(at) = value
-                  if (fix%hold) constraint%target(at) = x_start(fix%field, node)
-               end if
-            end do
-         end associate
-      end do
+      associate (z => model%domain%mesh%x(2, :), dofs => model%dofs)
+         do i = 1, size(by)
+            if (by(i) == 0) cycle
+            associate (fix => model%fixes(by(i)))
+               constraint%target(i) = value_of(fix, z(dofs%node(i)), factors(by(i)))
+               if (fix%hold) constraint%target(i) = x_start(fix%field, dofs%node(i))
+            end associate
+         end do
+         do i = 1, size(air_by)
+            if (air_by(i) == 0) cycle
+            associate (fix => model%fixes(air_by(i)))
+               constraint%air_target(i) = value_of(fix, z(i), factors(air_by(i)))
+               if (fix%hold) constraint%air_target(i) = x_start(AT_P_W, i) + x_start(AT_P_C, i)
+            end associate
+         end do
+      end associate
    end subroutine constrain_step
 
    !> What follows from the prescribed values of supports and terms. Pressures with a limit begin on that side of it on
@@ -126,53 +119,45 @@ contains
    !> Displacements at the end of a step whose accelerations are prescribed: those that the scheme gives them, so that
    !> inertia is exact and free of the ringing that a prescribed displacement has. Accelerations of the scheme belong to
    !> the time (gamma - 1/2) dt before the end of the step. docs/theory/host.md section 7.5.
-   subroutine follow_accelerations(model, stage, dofs, scheme, state, constraint)
+   subroutine follow_accelerations(model, stage, scheme, state, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme
       type(model_state_t), intent(in) :: state   !< Before the step.
       type(constraint_t), intent(inout) :: constraint
+      integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i
       real(wp) :: a
-      integer :: i, k, at
 
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i))
-            if (.not. fix%acceleration .or. .not. acts(fix, stage, state%time + scheme%dt)) cycle
-            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
-               associate (node => model%domain%mesh%groups(fix%group)%nodes(k), f => fix%field, dt => scheme%dt)
-                  at = dofs%of(f, node)
-                  if (at == 0) cycle
-                  constraint%target(at) = state%x(f, node)
-                  if (.not. scheme%has_inertia) cycle
-                  a = acceleration_at(model, fix, node, scheme, state%time + dt)
-                  constraint%target(at) = state%x(f, node) + dt*state%v(f, node) &
-                                          + dt**2*((0.5_wp - scheme%beta)*state%a(f, node) + scheme%beta*a)
-               end associate
-            end do
+      call prescribing_fixes(model, stage, constraint, state%time + scheme%dt, by, air_by)
+      do i = 1, size(by)
+         if (by(i) == 0) cycle
+         associate (fix => model%fixes(by(i)), f => model%dofs%field(i), node => model%dofs%node(i), dt => scheme%dt)
+            if (.not. fix%acceleration) cycle
+            constraint%target(i) = state%x(f, node)
+            if (.not. scheme%has_inertia) cycle
+            a = acceleration_at(model, fix, node, scheme, state%time + dt)
+            constraint%target(i) = state%x(f, node) + dt*state%v(f, node) &
+                                   + dt**2*((0.5_wp - scheme%beta)*state%a(f, node) + scheme%beta*a)
          end associate
       end do
    end subroutine follow_accelerations
 
    !> Accelerations that prescribed ones have when a stage begins; 0 elsewhere. docs/theory/host.md section 7.5.
-   subroutine starting_accelerations(model, stage, dofs, scheme, time, a)
+   subroutine starting_accelerations(model, stage, scheme, time, constraint)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       type(scheme_t), intent(in) :: scheme   !< Of the first step.
       real(wp), intent(in) :: time   !< [s]
-      real(wp), intent(out) :: a(:)   !< (unknowns) [m/s2]
-      integer :: i, k, at
+      type(constraint_t), intent(inout) :: constraint
+      integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i
 
-      a = 0.0_wp
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i))
-            if (.not. fix%acceleration .or. .not. acts(fix, stage, time + scheme%dt)) cycle
-            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
-               at = dofs%of(fix%field, model%domain%mesh%groups(fix%group)%nodes(k))
-               if (at > 0) &
-                  a(at) = acceleration_at(model, fix, model%domain%mesh%groups(fix%group)%nodes(k), scheme, time)
-            end do
+      call prescribing_fixes(model, stage, constraint, time + scheme%dt, by, air_by)
+      constraint%acceleration = [(0.0_wp, i=1, size(by))]
+      do i = 1, size(by)
+         if (by(i) == 0) cycle
+         associate (fix => model%fixes(by(i)))
+            if (fix%acceleration) constraint%acceleration(i) = &
+               acceleration_at(model, fix, model%dofs%node(i), scheme, time)
          end associate
       end do
    end subroutine starting_accelerations
@@ -185,8 +170,8 @@ contains
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: time
 
-      a = (fix%value + fix%value_slope*(model%domain%mesh%x(2, node) - fix%datum)) &
-          *factor_at(model, fix%amplitude, time + (0.5_wp - scheme%gamma)*scheme%dt)
+      a = value_of(fix, model%domain%mesh%x(2, node), &
+                   factor_at(model, fix%amplitude, time + (0.5_wp - scheme%gamma)*scheme%dt))
    end function acceleration_at
 
    !> Whether a &fix acts in a step.
@@ -199,11 +184,10 @@ contains
    end function acts
 
    !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:
-   !> none. The last one counts, as in constrain_step.
-   subroutine prescribing_fixes(model, stage, dofs, constraint, time, by, air_by)
+   !> none. The last one counts.
+   subroutine prescribing_fixes(model, stage, constraint, time, by, air_by)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
       real(wp), intent(in) :: time   !< At the end of a step [s].
       integer, intent(out) :: by(:), air_by(:)   !< (unknowns), (nodes)
@@ -217,7 +201,7 @@ contains
             do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
                node = model%domain%mesh%groups(fix%group)%nodes(k)
                if (is_released(constraint, i, node)) cycle
-               at = dofs%of(min(fix%field, AT_P_C), node)
+               at = model%dofs%of(min(fix%field, AT_P_C), node)
                if (at == 0) cycle
                if (fix%field == PRESCRIBED_P_A) air_by(node) = i
                if (fix%field /= PRESCRIBED_P_A) by(at) = i

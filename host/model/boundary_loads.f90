@@ -4,22 +4,20 @@ module boundary_loads
    use kinds, only: wp
    use model_types, only: model_t, factor_at, gravity_at, load_t, plate_t, unknowns_of
    use scene_parts, only: acts_in, stage_t
-   use degrees_of_freedom, only: dofs_t
    implicit none (type, external)
    private
    public :: load_at, force_of, plate_loads
 contains
    !> Loads of a stage at a time. (unknowns) Forces of loads and plates [kN], inflows [m3/s]: docs/theory/host.md
    !> sections 7.2 and 7.3.
-   function load_at(model, stage, dofs, time) result(load)
+   function load_at(model, stage, time) result(load)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: time   !< [s]
       real(wp), allocatable :: load(:)
       integer :: i
 
-      allocate (load(dofs%n), source=0.0_wp)
+      allocate (load(model%dofs%n), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
             if (acts_in(one%stages, stage%name)) load = load + force_of(one, factor_at(model, one%amplitude, time))
@@ -27,7 +25,7 @@ contains
       end do
       do i = 1, size(model%plates)
          associate (one => model%plates(i))
-            associate (at => unknowns_of(one, dofs))
+            associate (at => unknowns_of(one, model%dofs))
                load(at) = load(at) + plate_loads(model, one, time)/one%coordinates%unit
             end associate
          end associate

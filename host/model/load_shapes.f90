@@ -2,7 +2,7 @@
 !> Load vectors of a unit of every load, and the nodes that move together: made once, from the mesh.
 module load_shapes
    use acting_places, only: facing_edges
-   use degrees_of_freedom, only: dofs_t, tie, tie_pairs
+   use degrees_of_freedom, only: tie, tie_pairs
    use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use given_pressures, only: edges_with_flow
    use kinds, only: wp
@@ -31,29 +31,27 @@ contains
    end function ties_of
 
    !> Vectors of unit loads. (unknowns) of every load, per unit of its value: docs/theory/host.md section 7.2.
-   subroutine shape_loads(model, dofs)
+   subroutine shape_loads(model)
       type(model_t), intent(inout) :: model
-      type(dofs_t), intent(in) :: dofs
       integer :: i
 
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
             if (allocated(load%shape)) deallocate (load%shape)
             if (allocated(load%rise)) deallocate (load%rise)
-            allocate (load%shape(dofs%n), source=0.0_wp)
-            call shape_load(model, dofs, load, 1.0_wp, 0.0_wp, load%shape)
+            allocate (load%shape(model%dofs%n), source=0.0_wp)
+            call shape_load(model, load, 1.0_wp, 0.0_wp, load%shape)
             if (abs(load%value_slope) > 0.0_wp) then
-               allocate (load%rise(dofs%n), source=0.0_wp)
-               call shape_load(model, dofs, load, -load%datum, 1.0_wp, load%rise)
+               allocate (load%rise(model%dofs%n), source=0.0_wp)
+               call shape_load(model, load, -load%datum, 1.0_wp, load%rise)
             end if
          end associate
       end do
    end subroutine shape_loads
 
    !> Vector of a load of base + slope z.
-   subroutine shape_load(model, dofs, load, base, slope, shape)
+   subroutine shape_load(model, load, base, slope, shape)
       type(model_t), intent(in) :: model
-      type(dofs_t), intent(in) :: dofs
       type(load_t), intent(in) :: load
       real(wp), intent(in) :: base, slope
       real(wp), intent(inout) :: shape(:)
@@ -68,12 +66,12 @@ contains
             edges = facing_edges(model, load%group, load%stages)
             do e = 1, size(edges, 2)
                if (.not. acts(e)) cycle
-               call add_edge(model, dofs, edges(:, e), load%kind, base, slope, shape)
+               call add_edge(model, edges(:, e), load%kind, base, slope, shape)
             end do
          else
             f = merge(AT_U_R, AT_U_Z, load%kind == LOAD_FORCE_R)
             do k = 1, size(group%nodes)
-               associate (at => dofs%of(f, group%nodes(k)))
+               associate (at => model%dofs%of(f, group%nodes(k)))
                   if (at > 0) shape(at) = shape(at) + (base + slope*model%domain%mesh%x(2, group%nodes(k)))
                end associate
             end do
@@ -83,9 +81,8 @@ contains
 
    !> A load of base + slope z on an edge; its body lies on the left, so that the outward normal is the tangent turned
    !> right.
-   subroutine add_edge(model, dofs, edge, kind, base, slope, shape)
+   subroutine add_edge(model, edge, kind, base, slope, shape)
       type(model_t), intent(in) :: model
-      type(dofs_t), intent(in) :: dofs
       integer, intent(in) :: edge(3), kind
       real(wp), intent(in) :: base, slope
       real(wp), intent(inout) :: shape(:)
@@ -124,7 +121,7 @@ contains
          integer, intent(in) :: field, i
          real(wp), intent(in) :: value
 
-         associate (place => dofs%of(field, edge(i)))
+         associate (place => model%dofs%of(field, edge(i)))
             if (place > 0) shape(place) = shape(place) + value
          end associate
       end subroutine add

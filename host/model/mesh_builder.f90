@@ -1,59 +1,149 @@
 ! SPDX-License-Identifier: MIT
-!> The mesh of a scene: read from a file, or made of graded blocks.
+!> The mesh of a scene, &mesh: read from a file, or made of graded blocks; at another fineness built-in meshes keep
+!> their mapping, triangles of a file are split. docs/theory/host.md section 12.
 module mesh_builder
    use kinds, only: wp
-   use faults, only: fault_t, raise
-   use texts, only: short
    use exit_codes, only: EXIT_MESH
+   use faults, only: fault_t, raise, EXIT_INPUT
    use gmsh_reader, only: read_gmsh
    use graded_rectangle, only: graded_mesh
-   use scene_refinement, only: MOST_ELEMENTS
+   use key_schema, only: UNBOUNDED
+   use key_table, only: key_table_t
+   use model_types, only: model_t, mesh_source_t
    use scene_parts, only: place_of
-   use scene_types, only: scene_mesh_t
    use split_triangles, only: split_mesh
+   use texts, only: short, LENGTH
    use triangle_mesh, only: mesh_t
    implicit none (type, external)
    private
    public :: build_mesh
 
+   integer, parameter :: MOST_SPLITS = 3
+   real(wp), parameter :: MOST_ELEMENTS = 5.0e6_wp   !< Of a built-in mesh: entries of the matrix stay countable.
+
+   !> Breaks along an axis, cells between them, and the ratios of their sizes.
+   type :: blocks_t
+      real(wp), allocatable :: breaks(:), ratio(:)
+      integer, allocatable :: cells(:)
+   end type blocks_t
 contains
-   !> Reads or makes the mesh; a fault names what is wrong with the file or the breaks. Fault EXIT_MESH: as of
-   !> read_gmsh; breaks that do not ascend or do not fit cells and ratios; more than MOST_ELEMENTS.
-   subroutine build_mesh(scene, mesh, fault)
-      type(scene_mesh_t), intent(in) :: scene
+   !> &mesh. Fault EXIT_INPUT: a mesh of a file cannot be had so fine. EXIT_MESH: as of read_gmsh; breaks that do not
+   !> ascend or do not fit cells and ratios; more than MOST_ELEMENTS.
+   subroutine build_mesh(k, model, fault)
+      type(key_table_t), intent(inout) :: k
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(blocks_t) :: r, z
+      character(LENGTH) :: file
+      real(wp) :: scale, fineness
+
+      file = ''
+      scale = 1.0_wp
+      fineness = -1.0_wp
+      call k%text('file', file, 'Gmsh 4.1 text mesh, relative to the scene; or r and z:')
+      call k%number('scale', scale, 1.0e-9_wp, 1.0e9_wp, &
+                    'factor on the coordinates of the file; 1e-3: they are in mm', '+file')
+      call take_blocks('r', r)
+      call take_blocks('z', z)
+      call k%number('fineness', fineness, 0.01_wp, 64.0_wp, 'times as many cells along each axis; of a file 1, 2, 4, 8')
+      if (k%lists) return
+      model%mesh_source = mesh_source_t(k%group%file, k%group%line, file /= '', k%given('scale'))
+      if (file == '') then
+         call make_blocks(place_of(model%mesh_source), fineness, r, z, model%domain%mesh, fault)
+      else
+         ! A path is relative to the file of the scene.
+         if (index(file, '/') /= 1) file = k%group%file(:index(k%group%file, '/', back=.true.))//file
+         call read_file(place_of(model%mesh_source), trim(file), scale, fineness, model%domain%mesh, fault)
+      end if
+   contains
+      subroutine take_blocks(axis, blocks)
+         character(1), intent(in) :: axis
+         type(blocks_t), intent(out) :: blocks
+
+         call k%numbers(axis, blocks%breaks, -UNBOUNDED, UNBOUNDED, 'breaks along '//axis//' [m], ascending', '-file')
+         call k%wholes(axis//'_cells', blocks%cells, 1, 100000, 'cells between two breaks of '//axis, '-file')
+         call k%numbers(axis//'_ratio', blocks%ratio, 0.01_wp, 100.0_wp, &
+                        'size of a cell over that of the previous one; default 1', '-file')
+         if (size(blocks%ratio) == 0) blocks%ratio = spread(1.0_wp, 1, size(blocks%cells))
+      end subroutine take_blocks
+   end subroutine build_mesh
+
+   !> The mesh of a file; fineness is that of the scene, if it is > 0.
+   subroutine read_file(place, file, scale, fineness, mesh, fault)
+      character(*), intent(in) :: place, file
+      real(wp), intent(in) :: scale, fineness
       type(mesh_t), intent(out) :: mesh
       type(fault_t), intent(inout) :: fault
       type(mesh_t) :: finer
-      real(wp) :: elements
-      integer :: k
+      integer :: splits, i
 
-      if (scene%mesh_file /= '') then
-         call read_gmsh(trim(scene%mesh_file), mesh, fault)
-         if (fault%code /= 0) return
-         mesh%x = scene%scale*mesh%x
-         do k = 1, scene%splits
-            call split_mesh(mesh, finer)
-            mesh = finer
-         end do
+      splits = 0
+      if (fineness > 0.0_wp) then
+         splits = nint(log(fineness)/log(2.0_wp))
+         if (splits < 0 .or. splits > MOST_SPLITS .or. abs(fineness - 2.0_wp**splits) > 1.0e-9_wp) then
+            call raise(fault, EXIT_INPUT, place//'fineness = '//short(fineness)//' of &mesh with a file; its '// &
+                       'triangles can be split once, twice or three times: 1, 2, 4 or 8.')
+            return
+         end if
+      end if
+      call read_gmsh(file, mesh, fault)
+      if (fault%code /= 0) return
+      mesh%x = scale*mesh%x
+      do i = 1, splits
+         call split_mesh(mesh, finer)
+         mesh = finer
+      end do
+   end subroutine read_file
+
+   !> The built-in mesh; fineness is that of the scene, if it is > 0.
+   subroutine make_blocks(place, fineness, r, z, mesh, fault)
+      character(*), intent(in) :: place
+      real(wp), intent(in) :: fineness
+      type(blocks_t), intent(inout) :: r, z
+      type(mesh_t), intent(out) :: mesh
+      type(fault_t), intent(inout) :: fault
+      real(wp) :: elements
+
+      if (size(r%breaks) < 2 .or. size(z%breaks) < 2) then
+         call raise(fault, EXIT_MESH, place//'&mesh needs a file, or r and z with at least two breaks each.')
+      else if (.not. (fits(r) .and. fits(z))) then
+         call raise(fault, EXIT_MESH, place//'between n breaks there are n - 1 pieces: '// &
+                    'give r_cells, z_cells (and ratios) one value a piece.')
+      else if (.not. (ascends(r%breaks) .and. ascends(z%breaks))) then
+         call raise(fault, EXIT_MESH, place//'breaks of r and z must ascend.')
+      end if
+      if (fault%code /= 0) return
+      if (fineness > 0.0_wp) call refine(fineness, r)
+      if (fineness > 0.0_wp) call refine(fineness, z)
+      elements = 2*sum(real(r%cells, wp))*sum(real(z%cells, wp))
+      if (elements > MOST_ELEMENTS) then
+         call raise(fault, EXIT_MESH, place//'r_cells, z_cells: '//short(elements)//' elements; at most '// &
+                    short(MOST_ELEMENTS)//'.')
          return
       end if
-      elements = 2*sum(real(scene%r_cells, wp))*sum(real(scene%z_cells, wp))
-      associate (r => scene%r, z => scene%z)
-         if (size(r) < 2 .or. size(z) < 2) then
-            call raise(fault, EXIT_MESH, place_of(scene)//'&mesh needs a file, or r and z with at least two '// &
-                       'breaks each.')
-         else if (any([size(scene%r_cells), size(scene%r_ratio)] /= size(r) - 1) .or. &
-                  any([size(scene%z_cells), size(scene%z_ratio)] /= size(z) - 1)) then
-            call raise(fault, EXIT_MESH, place_of(scene)//'between n breaks there are n - 1 pieces: '// &
-                       'give r_cells, z_cells (and ratios) one value a piece.')
-         else if (any(r(2:) <= r(:size(r) - 1)) .or. any(z(2:) <= z(:size(z) - 1))) then
-            call raise(fault, EXIT_MESH, place_of(scene)//'breaks of r and z must ascend.')
-         else if (elements > MOST_ELEMENTS) then
-            call raise(fault, EXIT_MESH, place_of(scene)//'r_cells, z_cells: '//short(elements)//' elements; '// &
-                       'at most '//short(MOST_ELEMENTS)//'.')
-         else
-            call graded_mesh(r, scene%r_cells, scene%r_ratio, z, scene%z_cells, scene%z_ratio, mesh)
-         end if
-      end associate
-   end subroutine build_mesh
+      call graded_mesh(r%breaks, r%cells, r%ratio, z%breaks, z%cells, z%ratio, mesh)
+   end subroutine make_blocks
+
+   pure logical function fits(blocks)
+      type(blocks_t), intent(in) :: blocks
+
+      fits = all([size(blocks%cells), size(blocks%ratio)] == size(blocks%breaks) - 1)
+   end function fits
+
+   pure logical function ascends(breaks)
+      real(wp), intent(in) :: breaks(:)
+
+      ascends = all(breaks(2:) > breaks(:size(breaks) - 1))
+   end function ascends
+
+   !> `fineness` times the cells, at least one of a piece, their sizes on the same curve.
+   pure subroutine refine(fineness, blocks)
+      real(wp), intent(in) :: fineness
+      type(blocks_t), intent(inout) :: blocks
+      integer :: other(size(blocks%cells))
+
+      other = max(1, nint(fineness*blocks%cells))
+      blocks%ratio = blocks%ratio**(real(blocks%cells, wp)/other)
+      blocks%cells = other
+   end subroutine refine
 end module mesh_builder

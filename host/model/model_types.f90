@@ -8,47 +8,71 @@
 !> do nothing.
 module model_types
    use archive, only: archive_t
+   use contact_types, only: contact_options_t
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
    use kinds, only: wp
+   use material_point, only: material_slot_t
    use plate_motion, only: plate_motion_t
    use porous_domain, only: domain_t
-   use scene_parts, only: scene_item_t, amplitude_t, stage_t, initial_values_t, fix_values_t, load_values_t, &
-                          plate_values_t, contact_values_t, named_point_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH
+   use retention_curves, only: retention_t
+   use scene_parts, only: scene_item_t, amplitude_t, stage_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH, NEVER
    use solution, only: solution_t
    use texts, only: LENGTH
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
    public :: model_t, term_t, term_box_t, factor_at, gravity_at, unknowns_of
-   public :: action_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, solver_t
-
-   real(wp), parameter :: ALWAYS = -huge(1.0_wp)
+   public :: action_t, acting_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, &
+             given_region_t, curve_t, mesh_source_t
 
    !> Something that acts on a group of the mesh, for checks and warnings that ask no more of it.
    type, extends(scene_item_t) :: action_t
       character(10) :: what = ''                     !< Its group of the scene, as '&load'.
       integer :: group = 0, amplitude = 0            !< Of the mesh, 0: a face of its own; 0 is 1 throughout.
       character(LENGTH), allocatable :: stages(:)    !< In which it acts; none: all.
-      real(wp) :: from = ALWAYS                      !< Not before this time [s].
+      real(wp) :: from = -NEVER                      !< Not before this time [s].
       logical :: supports = .false.                  !< It prescribes values: where there is no ground it does nothing.
       logical :: along_normal = .false.              !< It needs ground on one side of its edges alone.
       logical :: bears = .false.                     !< It presses on the ground, or holds it.
       logical :: damps = .false.                     !< By dashpots: in dynamic stages alone, and it carries no weight.
    end type action_t
 
-   ! Groups of what follows are those of the mesh, amplitudes are places among the histories, 0: the factor is 1.
-   type, extends(initial_values_t) :: initial_t
+   ! Groups of what follows are those of the mesh, amplitudes are places among the histories, 0: the factor is 1. No
+   ! stages are all.
+   type, extends(scene_item_t) :: initial_t
+      character(LENGTH) :: group_name = 'all'
       integer :: group = 0
+      real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
+      logical :: with_table = .false.                !< Pressures are those of water at rest.
+      real(wp) :: water_table = 0.0_wp               !< [m]
       real(wp) :: water_weight = 0.0_wp              !< Of a water table, in the gravity of the start [kN/m3].
+      real(wp) :: largest_suction = NEVER            !< Above a water table [kPa].
+      real(wp) :: saturation = 0.0_wp, v_z = 0.0_wp, wave = 0.0_wp, wave_number = 0.0_wp
+      logical :: uniform = .false., geostatic = .false.
+      logical :: follows = .false.      !< Columns end at the top of the ground above a point, not at `surface`.
+      real(wp) :: sigma(3) = 0.0_wp, surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp
+      logical :: net = .true.           !< K_0 acts on the net stress where p_c > 0.
    end type initial_t
 
-   type, extends(fix_values_t) :: fix_t
+   !> A value that acts on a group, as it is or by a load.
+   type, extends(scene_item_t) :: acting_t
+      character(LENGTH) :: group_name = ''
       integer :: group = 0, amplitude = 0
+      real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
+      logical :: of_body = .false.                   !< It acts on a coordinate of a plate alone.
+      character(LENGTH), allocatable :: stages(:)
+   end type acting_t
+
+   type, extends(acting_t) :: fix_t
+      integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
+      real(wp) :: from = -NEVER, until = NEVER
+      logical :: hold = .false., acceleration = .false.
+      logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
    end type fix_t
 
-   type, extends(load_values_t) :: load_t
-      integer :: group = 0, amplitude = 0
+   type, extends(acting_t) :: load_t
+      integer :: kind = 0                            !< LOAD_...
       real(wp), allocatable :: shape(:)              !< Load vector of a unit value.
       real(wp), allocatable :: rise(:)               !< Load vector of the value z - datum, where it changes with z.
    end type load_t
@@ -62,7 +86,13 @@ module model_types
       character(8) :: names(4) = ['u_z ', 'v_z ', 'a_z ', 'load']   !< Of it, its rates and its load.
    end type coordinate_t
 
-   type, extends(plate_values_t) :: plate_t
+   !> A rigid plate: one with a face of its own that presses through a contact, or one that is joined to a boundary of
+   !> the mesh.
+   type, extends(scene_item_t) :: plate_t
+      character(NAME_LENGTH) :: name = ''
+      real(wp), allocatable :: corners(:, :)         !< (2, corners) of its own face, body on the left [m].
+      real(wp) :: mass = 0.0_wp, force = 0.0_wp
+      logical :: heavy = .false.
       integer :: group = 0, amplitude = 0            !< Boundary that moves with it, 0: it has a face of its own.
       integer :: node = 0                            !< It carries the plate's u_z: its own, or of the boundary.
       real(wp) :: penalty = 0.0_wp                   !< Springs that tie the boundary to it [kN/m3]; 0: they share u_z.
@@ -70,20 +100,45 @@ module model_types
       type(coordinate_t), allocatable :: coordinates(:)   !< Of the motion; the first is u_z.
    end type plate_t
 
-   type, extends(contact_values_t) :: contact_pair_t
+   !> Two boundaries, or a boundary and a plate, that may come into contact.
+   type, extends(scene_item_t) :: contact_pair_t
+      character(NAME_LENGTH) :: name = ''
+      type(contact_options_t) :: options
+      character(LENGTH), allocatable :: stages(:)
       integer :: slave = 0, master = 0
       integer :: plate = 0                           !< The master as a plate with a face of its own, 0: it is none.
    end type contact_pair_t
 
+   !> Two boundaries whose nodes at equal heights move as one.
    type :: tie_t
       logical :: pressures = .false.                 !< They have one pressure, too.
       integer, allocatable :: pairs(:, :)            !< (2, n) nodes of the first and the second boundary.
    end type tie_t
 
-   type, extends(named_point_t) :: point_t
+   type :: point_t
+      character(NAME_LENGTH) :: name = ''
+      real(wp) :: x(2) = 0.0_wp                      !< [m]
       integer :: nodes(6) = 0, gauss = 0             !< Of its element; nearest quadrature point.
       real(wp) :: weights(6) = 0.0_wp, pressure_weights(6) = 0.0_wp   !< Of the nodes.
    end type point_t
+
+   !> A region as the scene names it, for sentences; the others are in the domain.
+   type, extends(scene_item_t) :: given_region_t
+      character(LENGTH) :: group_name = 'all', material_name = '', retention_name = ''
+      logical :: rest = .false.         !< Without a group: the elements that no other region has.
+   end type given_region_t
+
+   !> A retention curve, or why its group gives none: that is told where a region asks for it.
+   type :: curve_t
+      character(NAME_LENGTH) :: name = ''
+      class(retention_t), allocatable :: curve
+      type(fault_t) :: fault
+   end type curve_t
+
+   !> Where the mesh comes from.
+   type, extends(scene_item_t) :: mesh_source_t
+      logical :: from_file = .false., scaled = .false.   !< The key scale is given.
+   end type mesh_source_t
 
    !> Which scene a run is of, for its files and sentences.
    type :: origin_t
@@ -111,6 +166,11 @@ module model_types
 
    type :: model_t
       type(origin_t) :: origin
+      real(wp) :: step_tolerance = 0.0_wp            !< Of the scene, that of its stages and laws [-]; 0: not given.
+      type(mesh_source_t) :: mesh_source
+      type(material_slot_t), allocatable :: materials(:)
+      type(curve_t), allocatable :: curves(:)
+      type(given_region_t), allocatable :: regions(:)   !< In the order of those of the domain.
       type(domain_t) :: domain
       type(dofs_t) :: dofs
       type(amplitude_t), allocatable :: amplitudes(:)

@@ -6,7 +6,7 @@ module name_search
    use triangle_mesh, only: mesh_t, find_group
    implicit none (type, external)
    private
-   public :: mesh_group, defined_name
+   public :: mesh_group, defined_name, history_named
 contains
    !> Place of a group of the mesh that is to be used; a fault names those that there are. Fault EXIT_GROUP: there is
    !> none, one without entities, or two of them; 0 then.
@@ -45,6 +45,15 @@ contains
                     listed(names)//'.')
       end if
    end function defined_name
+
+   !> Place of a history, 0 where none is named. Fault EXIT_GROUP: it is not defined.
+   integer function history_named(name, names, place, fault) result(found)
+      character(*), intent(in) :: name, names(:), place   !< As of defined_name.
+      type(fault_t), intent(inout) :: fault
+
+      found = 0
+      if (name /= '') found = defined_name('history', name, names, place, fault)
+   end function history_named
 
    pure function listed(names) result(list)
       character(*), intent(in) :: names(:)

@@ -1,58 +1,83 @@
 ! SPDX-License-Identifier: MIT
-!> Regions of a scene: which material, with which retention curve, and which relative permeability every element has.
+!> Materials, &retention, &permeability and &region of a scene: the laws, and which of them every element has.
 module region_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
-   use key_schema, only: line_of
-   use key_table, only: key_table_t, reading
+   use key_schema, only: line_of, get_text, REQUIRED, UNBOUNDED
+   use key_table, only: key_table_t
    use material_mud, only: mud_t
    use material_point, only: material_t, material_slot_t
    use material_registry, only: new_material
+   use model_types, only: model_t, given_region_t, curve_t
    use name_search, only: mesh_group, defined_name
-   use porous_domain, only: domain_t, COUPLED, DRY
+   use namelists, only: group_t
+   use permeability_laws, only: permeability_t
+   use porous_domain, only: region_t, COUPLED, DRY
    use retention_groups, only: new_retention
    use scene_parts, only: place_of
-   use scene_types, only: scene_t, scene_region_t
+   use scene_tolerances, only: ask_stress
+   use scene_types, only: item_of
    use texts, only: whole, LENGTH
    implicit none (type, external)
    private
-   public :: build_regions
+   public :: build_retention, build_permeability, build_material, build_region
 
+   real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    !> Names of no curve: the material has a retention of its own. The second is that of older scenes.
    character(8), parameter :: OF_THE_MATERIAL(2) = [character(8) :: 'material', 'mud']
 contains
-   !> Materials, retention and permeability of every element; a fault names elements without a region and unknown names.
-   !> Fault EXIT_GROUP: an element of no region or of two, or a name that is not defined. Fault EXIT_INPUT: no void
-   !> ratio where there are fluids, two retentions or none, saturation_rate = "suction" with a saturation that is a
-   !> state, tangent = 0; and what the laws refuse.
-   subroutine build_regions(scene, domain, fault)
-      type(scene_t), intent(in) :: scene
-      type(domain_t), intent(inout) :: domain
-      type(fault_t), intent(inout) :: fault
-      type(material_slot_t) :: materials(size(scene%materials))
-      character(LENGTH) :: title
-      integer :: i
+   !> &retention. The fault of its curve is told where a region asks for it.
+   subroutine build_retention(k, model)
+      type(key_table_t), intent(inout) :: k
+      type(model_t), intent(inout) :: model
+      type(curve_t) :: curve
 
-      do i = 1, size(scene%materials)
-         associate (given => scene%materials(i))
-            materials(i)%name = given%name
-            call new_material(trim(given%group%name), given%group, materials(i)%law, title, fault)
-            if (fault%code == 0) call check_tangent(materials(i), at_line(given%group%file, &
-                                                                          line_of(given%group, 'tangent')), fault)
-         end associate
-         if (fault%code /= 0) return
-      end do
-      allocate (domain%regions(size(scene%regions)))
-      allocate (domain%region_of(size(domain%mesh%t6, 2)), source=0)
-      do i = 1, size(scene%regions)
-         call build_region(scene, scene%regions(i), i, materials, domain, fault)
-         if (fault%code /= 0) return
-      end do
-      if (any(domain%region_of == 0)) call raise(fault, EXIT_GROUP, trim(scene%file)//': element '// &
-         whole(findloc(domain%region_of, 0, dim=1))//' belongs to no &region; add one with its group, or with '// &
-         'group = ''all''.')
-   end subroutine build_regions
+      call k%text('name', curve%name, 'name, for the key of &region', REQUIRED)
+      call new_retention(k, curve%curve, curve%fault)
+      if (.not. k%lists) model%curves = [model%curves, curve]
+   end subroutine build_retention
+
+   !> &permeability. Fault EXIT_INPUT: an empty range of saturation.
+   subroutine build_permeability(k, model, fault)
+      type(key_table_t), intent(inout) :: k
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(permeability_t) :: law
+
+      call k%text('name', law%name, 'name, for the key of &region', REQUIRED)
+      call k%number('intrinsic', law%intrinsic, TINY_, ONE, 'intrinsic permeability [m2]', REQUIRED)
+      call k%word('law', law%law, 'corey|mualem|power|constant', 'relative permeabilities')
+      call k%number('s_min', law%s_min, ZERO, 0.999_wp, 'S_w at which S_e = 0 [-]', 'law=corey|mualem|power')
+      call k%number('s_max', law%s_max, 0.001_wp, ONE, 'S_w at which S_e = 1 [-]', 'law=corey|mualem|power')
+      call k%number('a', law%a, ZERO, BIG, 'power: k_rw = 1 - a (1 - S_w)**b', 'law=power')
+      call k%number('b', law%b, ONE, 100*ONE, 'corey: k_rw = S_e**b; power: see a', 'law=corey|power')
+      call k%number('c', law%c, ONE, 100*ONE, 'corey, power: k_ra = (1 - S_e)**2 (1 - S_e**c)', 'law=corey|power')
+      call k%number('m', law%m, 0.01_wp, 0.99_wp, 'exponent of Mualem-van Genuchten [-]', 'law=mualem')
+      call k%number('k_rw', law%k_rw, ZERO, ONE, 'constant: relative permeability to water [-]', 'law=constant')
+      call k%number('k_ra', law%k_ra, ZERO, ONE, 'constant: relative permeability to air [-]', 'law=constant')
+      call k%number('floor', law%floor, ZERO, ONE, 'least relative permeability [-]')
+      if (k%lists) return
+      if (law%s_max <= law%s_min) call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)// &
+                                             's_max must be larger than s_min.')
+      model%domain%permeabilities = [model%domain%permeabilities, law]
+   end subroutine build_permeability
+
+   !> The group of a material, whose law checks its own keys. Faults: those of new_material; EXIT_INPUT: tangent = 0.
+   subroutine build_material(group, model, fault)
+      type(group_t), intent(inout) :: group
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(material_slot_t) :: material
+      character(LENGTH) :: name, title
+
+      call get_text(group, 'name', name)
+      material%name = name(:len(material%name))
+      call ask_stress(model%step_tolerance, group)
+      call new_material(trim(group%name), group, material%law, title, fault)
+      if (fault%code == 0) call check_tangent(material, at_line(group%file, line_of(group, 'tangent')), fault)
+      if (fault%code == 0) model%materials = [model%materials, material]
+   end subroutine build_material
 
    !> Newton's method needs slopes.
    subroutine check_tangent(material, place, fault)
@@ -67,81 +92,100 @@ contains
       end select
    end subroutine check_tangent
 
-   subroutine build_region(scene, given, number, materials, domain, fault)
-      type(scene_t), intent(in) :: scene
-      type(scene_region_t), intent(in) :: given
-      integer, intent(in) :: number      !< Of the region.
-      type(material_slot_t), intent(in) :: materials(:)
-      type(domain_t), intent(inout) :: domain
+   !> &region, once mesh, laws and curves are known: its part of the domain. Fault EXIT_GROUP: a group or name that is
+   !> not defined, or an element of two regions. EXIT_INPUT: no void ratio where there are fluids, two retentions or
+   !> none, saturation_rate = "suction" with a saturation that is a state; and what the curve refuses.
+   subroutine build_region(k, model, fault)
+      type(key_table_t), intent(inout) :: k
+      type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
-      integer :: group, k
+      type(region_t) :: region
+      type(given_region_t) :: given
+      character(LENGTH) :: permeability_name
+      integer :: group, m
 
-      group = mesh_group(domain%mesh, given%group_name, place_of(given), fault)
+      permeability_name = ''
+      region%rho_s = 2.65_wp
+      region%void_ratio = -1.0_wp
+      call k%text('group', given%group_name, 'group of elements; without it those that no other region names')
+      call k%text('material', given%material_name, 'name of a material, as &mud or &elastic', REQUIRED, &
+                  refers='material')
+      call k%text('retention', given%retention_name, 'name of a &retention, or "material": its own', &
+                  'drainage=coupled|drained|undrained :p_c', refers='retention')
+      call k%text('permeability', permeability_name, 'name of a &permeability', 'drainage=coupled :p_w', &
+                  refers='permeability')
+      call k%word('drainage', region%drainage, 'coupled|drained|undrained|dry', &
+                  'fluids flow, stay at given pressures, stay in every element, or are absent', ':p_w')
+      call k%number('rho_s', region%rho_s, ZERO, 1000*ONE, 'density of the grains [Mg/m3]')
+      call k%number('void_ratio', region%void_ratio, ZERO, 10*ONE, 'initial void ratio [-]; default: the material''s')
+      call k%number('damping', region%damping, ZERO, BIG, 'force against the velocity over mass, dynamic stages [1/s]')
+      call k%number('stiffness_damping', region%stiffness_damping, ZERO, BIG, &
+                    'stress of the skeleton from its rate, dynamic stages [s]')
+      if (k%lists) return
+      given%scene_item_t = item_of(k%group)
+      given%rest = .not. k%given('group')
+      model%regions = [model%regions, given]
+      group = mesh_group(model%domain%mesh, given%group_name, place_of(given), fault)
       if (fault%code /= 0) return
-      k = defined_name('material', given%material_name, materials%name, place_of(given), fault)
+      m = defined_name('material', given%material_name, model%materials%name, place_of(given), fault)
       if (fault%code /= 0) return
-      associate (region => domain%regions(number))
-         allocate (region%law, source=materials(k)%law)
+      allocate (region%law, source=model%materials(m)%law)
+      associate (domain => model%domain)
          region%stress_tolerance = region%law%tolerance
-         region%rho_s = given%rho_s
-         region%damping = given%damping
-         region%stiffness_damping = given%stiffness_damping
-         region%void_ratio = given%void_ratio
          ! Without fluids in the scene there is no difference.
-         region%drainage = merge(given%drainage, COUPLED, domain%with_w)
+         if (.not. domain%with_w) region%drainage = COUPLED
          region%with_w = domain%with_w .and. region%drainage /= DRY
          region%with_c = domain%with_c .and. region%drainage /= DRY
-         if (given%void_ratio < 0.0_wp) region%void_ratio = region%law%default_void_ratio()
+         if (region%void_ratio < 0.0_wp) region%void_ratio = region%law%default_void_ratio()
          if (region%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(given)// &
             'the region needs a void_ratio: its pores hold the fluids.')
          if (region%with_w .and. region%drainage == COUPLED .and. fault%code == 0) region%permeability = &
-            defined_name('permeability', given%permeability_name, domain%permeabilities%name, place_of(given), fault)
-         call take_elements(scene, number, domain%mesh%groups(group)%elements, domain%region_of, fault)
-         if (region%with_c .and. fault%code == 0) call give_retention(scene, given, region%law, fault)
+            defined_name('permeability', permeability_name, domain%permeabilities%name, place_of(given), fault)
+         call take_elements(model%regions, domain%mesh%groups(group)%elements, domain%region_of, fault)
+         if (region%with_c .and. fault%code == 0) call give_retention(model, given, region%law, fault)
+         domain%regions = [domain%regions, region]
       end associate
    end subroutine build_region
 
-   !> The elements of a region. One without a group has those that no other region names, wherever it stands; elements
-   !> that two groups name are refused, for nothing says which region they belong to.
-   subroutine take_elements(scene, number, elements, region_of, fault)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: number, elements(:)
+   !> The elements of the last region. One without a group has those that no other region names, wherever it stands;
+   !> elements that two groups name are refused, for nothing says which region they belong to.
+   subroutine take_elements(regions, elements, region_of, fault)
+      type(given_region_t), intent(in) :: regions(:)
+      integer, intent(in) :: elements(:)
       integer, intent(inout) :: region_of(:)
       type(fault_t), intent(inout) :: fault
       logical :: both(size(elements))
       integer :: i
 
       if (fault%code /= 0) return
-      associate (regions => scene%regions)
+      associate (last => regions(size(regions)))
          both = region_of(elements) > 0
          do i = 1, size(elements)
-            if (both(i)) both(i) = regions(region_of(elements(i)))%rest .eqv. regions(number)%rest
+            if (both(i)) both(i) = regions(region_of(elements(i)))%rest .eqv. last%rest
          end do
-         if (any(both)) then
-            i = findloc(both, .true., dim=1)
+         i = findloc(both, .true., dim=1)
+         if (i > 0) then
             associate (other => regions(region_of(elements(i))))
-               call raise(fault, EXIT_GROUP, place_of(regions(number))//'the groups '''// &
-                  trim(regions(number)%group_name)//''' and '''//trim(other%group_name)//''' of two &region (lines '// &
-                  whole(other%line)//' and '//whole(regions(number)%line)//') have '//whole(count(both))// &
-                  ' elements in common, the first is '//whole(elements(i))//'; a &region without group has the '// &
-                  'elements that no other region names.')
+               call raise(fault, EXIT_GROUP, place_of(last)//'the groups '''//trim(last%group_name)//''' and '''// &
+                  trim(other%group_name)//''' of two &region (lines '//whole(other%line)//' and '//whole(last%line)// &
+                  ') have '//whole(count(both))//' elements in common, the first is '//whole(elements(i))// &
+                  '; a &region without group has the elements that no other region names.')
             end associate
             return
          end if
+         do i = 1, size(elements)
+            if (region_of(elements(i)) == 0 .or. .not. last%rest) region_of(elements(i)) = size(regions)
+         end do
       end associate
-      do i = 1, size(elements)
-         if (region_of(elements(i)) == 0 .or. .not. scene%regions(number)%rest) region_of(elements(i)) = number
-      end do
    end subroutine take_elements
 
    !> A law has a retention of its own, or the curve that the region names: never two. A rate of saturation by suction
    !> alone needs a curve.
-   subroutine give_retention(scene, given, law, fault)
-      type(scene_t), intent(in) :: scene
-      type(scene_region_t), intent(in) :: given
+   subroutine give_retention(model, given, law, fault)
+      type(model_t), intent(in) :: model
+      type(given_region_t), intent(in) :: given
       class(material_t), intent(inout) :: law
       type(fault_t), intent(inout) :: fault
-      type(key_table_t) :: table
       logical :: asked
       integer :: k
 
@@ -150,7 +194,7 @@ contains
          call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has a '// &
                     'retention of its own: say retention = ''material'', and give its parameters there (of &mud: '// &
                     'P_a, Omega, n_x, m_x, S_max, S_min).')
-      else if (law%saturation_is_state .and. .not. scene%full_saturation_rate) then
+      else if (law%saturation_is_state .and. .not. model%domain%full_rate) then
          call raise(fault, EXIT_INPUT, place_of(given)//'saturation_rate = ''suction'' of &scene takes the rate of '// &
                     'saturation from a retention curve, but the saturation of material '''// &
                     trim(given%material_name)//''' is a state variable (hysteresis = 1 of &mud, saturation_at of '// &
@@ -159,10 +203,10 @@ contains
          call raise(fault, EXIT_INPUT, place_of(given)//'material '''//trim(given%material_name)//''' has no '// &
                     'retention of its own; name a &retention.')
       else if (.not. law%has_retention) then
-         k = defined_name('retention', given%retention_name, scene%retentions%name, place_of(given), fault)
+         k = defined_name('retention', given%retention_name, model%curves%name, place_of(given), fault)
          if (fault%code /= 0) return
-         table = reading(scene%retentions(k)%group)
-         call new_retention(table, law%curve, fault)
+         fault = model%curves(k)%fault
+         if (fault%code == 0) law%curve = model%curves(k)%curve
       end if
    end subroutine give_retention
 end module region_builder

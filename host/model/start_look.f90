@@ -8,8 +8,8 @@ module start_look
    use history_shapes, only: slope_beside
    use warnings, only: print_warning
    use start_findings, only: balance_t
-   use model_types, only: model_t, fix_t, plate_t
-   use scene_parts, only: acts_in, amplitude_t, place_of, scene_item_t, LOAD_AIR, PRESCRIBED_P_A
+   use model_types, only: model_t, action_t, fix_t, plate_t
+   use scene_parts, only: acts_in, amplitude_t, place_of, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)
@@ -298,36 +298,27 @@ contains
    !> be meant from the start of that stage.
    subroutine look_at_pulses(model)
       type(model_t), intent(in) :: model
-      character(1) :: none(0)
       integer :: i
 
-      do i = 1, size(model%loads)
-         call look(model%loads(i)%scene_item_t, model%loads(i)%amplitude, model%loads(i)%stages)
-      end do
-      do i = 1, size(model%fixes)
-         call look(model%fixes(i)%scene_item_t, model%fixes(i)%amplitude, model%fixes(i)%stages)
-      end do
-      do i = 1, size(model%plates)
-         call look(model%plates(i)%scene_item_t, model%plates(i)%amplitude, none)
+      do i = 1, size(model%actions)
+         if (model%actions(i)%amplitude > 0) call look(model%actions(i))
       end do
    contains
-      subroutine look(item, amplitude, stages)
-         class(scene_item_t), intent(in) :: item
-         integer, intent(in) :: amplitude
-         character(*), intent(in) :: stages(:)
+      subroutine look(item)
+         type(action_t), intent(in) :: item
          real(wp) :: start
          integer :: s
 
          s = findloc(has_inertia(model%stages%kind), .true., dim=1)
-         if (amplitude == 0 .or. s < 2) return
-         if (.not. acts_in(stages, model%stages(s)%name)) return
+         if (s < 2) return
+         if (.not. acts_in(item%stages, model%stages(s)%name)) return
          start = sum(model%stages(:s - 1)%duration)
-         associate (h => model%amplitudes(amplitude), n => size(model%amplitudes(amplitude)%times))
+         associate (h => model%amplitudes(item%amplitude), n => size(model%amplitudes(item%amplitude)%times))
             if (size(h%stages) > 0) return
             if (h%times(n) > start .or. h%times(n) - h%times(1) > BRIEF*start) return
             if (abs(h%values(n) - h%values(1)) > 0.0_wp .or. .not. any(abs(h%values - h%values(1)) > 0.0_wp)) return
             ! What acts from that stage on alone is told by its first factor.
-            if (.not. any([(acts_in(stages, model%stages(i)%name), i=1, s - 1)])) return
+            if (.not. any([(acts_in(item%stages, model%stages(i)%name), i=1, s - 1)])) return
             call print_warning(place_of(item)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &
                ' s, before stage '//trim(model%stages(s)%name)//' begins at '//short(start)//' s; times of a '// &
                '&history are those of the run, not of a stage: its key stages counts them from stages.')

@@ -5,7 +5,7 @@ module checkpoints
    use archive, only: archive_t
    use archive_file, only: archive_file_t, archive_kind_t, create_archive, open_archive, close_archive
    use run_state, only: run_t, exchange_run
-   use run_observer, only: observer_t, observers_t, slot_t, news_t
+   use run_observer, only: observer_t, observers_t, slot_t
    use wall_clock, only: clock
    use interrupts, only: interrupted, EXIT_INTERRUPTED
    use kinds, only: wp
@@ -33,11 +33,10 @@ module checkpoints
    end type checkpoint_observer_t
 contains
    !> Begins to count the time to the first checkpoint.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(checkpoint_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       self%last = clock()
@@ -45,11 +44,10 @@ contains
 
    !> Writes a checkpoint where it is due, and ends a run that is interrupted. A run that is taken up here has no
    !> factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be written; EXIT_INTERRUPTED.
-   subroutine taken_over(self, model, run, news, fault)
+   subroutine taken_over(self, model, run, fault)
       class(checkpoint_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       logical :: due
 
@@ -59,12 +57,12 @@ contains
          if (seconds > 0.0_wp) due = clock() - self%last >= seconds .or. due
       end associate
       if (due) then
-         call write_checkpoint(self%folder, model, run, news%earlier, fault)
+         call write_checkpoint(self%folder, model, run, self%earlier, fault)
          self%last = clock()
          run%system%factored = .false.
          run%assembly%slopes%known = .false.
       end if
-      if (fault%code == 0 .and. interrupted() .and. .not. (news%last .and. news%stage == size(model%stages))) &
+      if (fault%code == 0 .and. interrupted() .and. .not. (run%news%last .and. run%at%stage == size(model%stages))) &
          call raise(fault, EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to '// &
                     'there are complete; --restart '//self%folder//'/'//CHECKPOINT//' goes on.')
    end subroutine taken_over

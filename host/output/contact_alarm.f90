@@ -8,7 +8,7 @@ module contact_alarm
    use generalised_alpha, only: has_inertia
    use faults, only: fault_t
    use model_types, only: model_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use scene_parts, only: acts_in
    use texts, only: short
@@ -35,17 +35,16 @@ module contact_alarm
 contains
    !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
    !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
-   subroutine stage_begins(self, model, run, news, fault)
+   subroutine stage_begins(self, model, run, fault)
       class(contact_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (size(model%contacts) == 0) return
       select type (contacts => run%system%contacts)
       type is (contacts_t)
-         if (contacts%probe(run%state%x)) call warn_of_overlaps(model, contacts%interfaces, run%state%x, news%stage)
+         if (contacts%probe(run%state%x)) call warn_of_overlaps(model, contacts%interfaces, run%state%x, run%at%stage)
       end select
    end subroutine stage_begins
 
@@ -94,11 +93,10 @@ contains
 
    !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(contact_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       integer :: i
 

@@ -5,8 +5,7 @@ module contact_rows
    use boundary_loads, only: plate_loads
    use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions
    use model_types, only: model_t, plate_t
-   use porous_domain, only: model_state_t
-   use surface_forces, only: surface_forces_t
+   use run_state, only: run_t
    implicit none (type, external)
    private
    public :: contact_columns, contact_row, contact_nodes
@@ -37,19 +36,19 @@ contains
    end function contact_columns
 
    !> Row of contact.csv: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
-   !> of every contact thrust [kN], energy [kJ], area [m2], active nodes, sealed nodes; of every coordinate of a plate
-   !> its value [m], rate [m/s], acceleration [m/s2] and load [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
-   function contact_row(model, contacts, dt, state, work) result(row)
+   !> of every contact vertical force on the master, upwards [kN], energy of the penalty [kJ], area of the active nodes
+   !> [m2], active nodes, sealed nodes, friction on the master along the slave's tangent, summed up [kN], nodes whose
+   !> friction is at its limit; of every coordinate of a plate its value [m], rate [m/s], acceleration [m/s2] and load
+   !> [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
+   function contact_row(model, run) result(row)
       type(model_t), intent(in) :: model
-      class(surface_forces_t), allocatable, intent(in) :: contacts
-      real(wp), intent(in) :: dt, work   !< [s], [kJ]
-      type(model_state_t), intent(in) :: state
+      type(run_t), intent(in) :: run   !< After a step that was taken over.
       real(wp), allocatable :: row(:)
       integer :: i
 
-      row = [state%time, dt, work]
-      if (allocated(contacts)) then
-         select type (contacts)
+      row = [run%state%time, run%scheme%dt, run%news%contact_work]
+      if (allocated(run%system%contacts)) then
+         select type (contacts => run%system%contacts)
          type is (contacts_t)
             row = [row, (values(contacts%interfaces(i)), i=1, size(model%contacts))]
          end select
@@ -61,9 +60,10 @@ contains
          real(wp) :: list(4*size(plate%coordinates)), loads(size(plate%coordinates))
          integer :: k
 
-         loads = plate_loads(model, plate, state%time)
+         loads = plate_loads(model, plate, run%state%time)
          do k = 1, size(loads)
-            associate (of => plate%coordinates(k), f => plate%coordinates(k)%field, node => plate%coordinates(k)%node)
+            associate (of => plate%coordinates(k), f => plate%coordinates(k)%field, node => plate%coordinates(k)%node, &
+                       state => run%state)
                list(4*k - 3:4*k) = [[state%x(f, node), state%v(f, node), state%a(f, node)]/of%unit, loads(k)]
             end associate
          end do
@@ -73,31 +73,36 @@ contains
          type(contact_interface_t), intent(in) :: t
          real(wp) :: list(7)
 
-         list = [t%thrust, t%energy, t%area, real(t%active, wp), real(t%sealed, wp), t%drag, &
-                 real(t%sliding, wp)]
+         list = 0.0_wp
+         list(5) = t%sealed
+         if (.not. t%acts) return
+         associate (r => t%result)
+            list(:4) = [sum(r%force(2:2*t%geometry%slave_nodes:2)), r%energy, sum(r%weight, mask=r%active), &
+                        real(count(r%active), wp)]
+            list(6:) = [dot_product(r%weight, r%traction), real(count(r%side /= 0), wp)]
+         end associate
       end function values
    end function contact_row
 
    !> Slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at the
    !> start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step. A
    !> state that a kernel refuses has none.
-   subroutine contact_nodes(model, contacts, state, table)
+   function contact_nodes(model, run) result(table)
       type(model_t), intent(in) :: model
-      class(surface_forces_t), intent(in) :: contacts
-      type(model_state_t), intent(in) :: state
-      real(wp), allocatable, intent(out) :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
+      type(run_t), intent(in) :: run   !< It has contacts.
+      real(wp), allocatable :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
       type(contacts_t) :: trial
       real(wp), allocatable :: shear(:)
       integer :: c, i
 
       allocate (table(8, 0))
-      select type (contacts)
+      select type (contacts => run%system%contacts)
       type is (contacts_t)
          trial = contacts
       class default
          return
       end select
-      if (.not. trial%probe(state%x)) return
+      if (.not. trial%probe(run%state%x)) return
       do c = 1, size(model%contacts)
          associate (t => trial%interfaces(c), found => trial%interfaces(c)%probe)
             if (.not. t%acts) cycle
@@ -107,5 +112,5 @@ contains
                             [8, size(table, 2) + size(shear)])
          end associate
       end do
-   end subroutine contact_nodes
+   end function contact_nodes
 end module contact_rows

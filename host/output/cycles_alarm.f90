@@ -8,7 +8,7 @@ module cycles_alarm
    use kinds, only: wp
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
    use model_types, only: model_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use scene_parts, only: amplitude_at, acts_in
    use texts, only: short, whole
@@ -52,11 +52,10 @@ contains
    end subroutine exchange
 
    !> Makes room for the histories and the displacements, which start where the run does.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       integer :: i
 
@@ -75,11 +74,10 @@ contains
 
    !> Counts the turns of the histories that act in the stage and of the displacements of the ground, and tells when one
    !> has many, once, on standard error.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp) :: factor, least
       integer :: i, n, at
@@ -87,7 +85,7 @@ contains
       n = size(model%amplitudes)
       do i = 1, n
          factor = amplitude_at(model%amplitudes(i), run%next%time)
-         if (.not. acts(model, i, model%stages(news%stage)%name)) then
+         if (.not. acts(model, i, model%stages(run%at%stage)%name)) then
             self%farthest(i) = factor
             self%sense(i) = 0
             cycle
@@ -102,7 +100,7 @@ contains
       if (self%told .or. maxval(self%turns) <= MANY_REVERSALS) return
       self%told = .true.
       at = maxloc(self%turns, 1)
-      call print_warning('stage '//trim(model%stages(news%stage)%name)//', time '//short(run%next%time)//' s: '// &
+      call print_warning('stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%next%time)//' s: '// &
                          what_turned()//' has turned '//whole(self%turns(at))//' times: '//CYCLES_UNTRUSTED)
    contains
       function what_turned() result(text)

@@ -6,8 +6,8 @@ module effect_indicators
    use energy_ledger, only: kinetic_energy
    use model_types, only: model_t
    use unknown_fields, only: AT_P_W
-   use porous_domain, only: model_state_t, is_present
-   use generalised_alpha, only: has_rates, has_inertia
+   use porous_domain, only: is_present
+   use run_state, only: run_t
    use texts, only: whole
    implicit none (type, external)
    private
@@ -29,26 +29,25 @@ contains
    !> acceleration of a node [m/s2], for that of the skeleton in Darcy's law; the largest tension of the water [kPa],
    !> for suction; the inverse of the least mean effective stress of a material that yields [1/kPa], for gravity; of
    !> every region the largest rate of volume [1/s], for flow. 0 where there is none.
-   function indicators_of(model, stage, dt, mass, old, new) result(values)
+   function indicators_of(model, run) result(values)
       type(model_t), intent(in) :: model
-      integer, intent(in) :: stage           !< Number of the present one.
-      real(wp), intent(in) :: dt, mass(:)    !< [s]; (unknowns) of bodies [Mg].
-      type(model_state_t), intent(in) :: old, new
+      type(run_t), intent(in) :: run   !< After a step.
       real(wp) :: values(4 + size(model%domain%regions)), least
       integer :: e, at
 
       values = 0.0_wp
-      if (has_rates(model%stages(stage)%kind)) values(1) = sqrt(2*kinetic_energy(model%domain, model%dofs, mass, new))
-      if (has_inertia(model%stages(stage)%kind)) values(2) = sqrt(maxval(sum(new%a**2, dim=1)))
-      values(3) = max(0.0_wp, maxval(-new%x(AT_P_W, :), mask=model%dofs%of(AT_P_W, :) > 0))
+      if (run%scheme%has_rates) &
+         values(1) = sqrt(2*kinetic_energy(model%domain, model%dofs, run%constraint%mass, run%next))
+      if (run%scheme%has_inertia) values(2) = sqrt(maxval(sum(run%next%a**2, dim=1)))
+      values(3) = max(0.0_wp, maxval(-run%next%x(AT_P_W, :), mask=model%dofs%of(AT_P_W, :) > 0))
       least = huge(1.0_wp)
-      associate (m => model%domain)
+      associate (m => model%domain, old => run%state, new => run%next)
          do e = 1, size(m%region_of)
             if (.not. is_present(new, e)) cycle
             at = 4 + m%region_of(e)
             associate (points => [((e - 1)*m%rule + 1), (e*m%rule)])
                associate (one => old%e(points(1):points(2)), two => new%e(points(1):points(2)))
-                  values(at) = max(values(at), maxval(abs(two - one)/(1 + two))/dt)
+                  values(at) = max(values(at), maxval(abs(two - one)/(1 + two))/run%scheme%dt)
                end associate
                if (.not. m%regions(m%region_of(e))%law%has_energy) &
                   least = min(least, minval(-sum(new%stress(1:3, points(1):points(2)), dim=1)/3))

@@ -6,6 +6,7 @@
 module energy_ledger
    use archive, only: archive_t
    use kinds, only: wp
+   use model_types, only: model_t
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use linear_forces, only: work_of_linear_forces
    use degrees_of_freedom, only: dofs_t
@@ -14,6 +15,7 @@ module energy_ledger
    use permeability_laws, only: relative_t, relative_permeability
    use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t
+   use run_state, only: run_t
    implicit none (type, external)
    private
    public :: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, &
@@ -52,16 +54,11 @@ contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
    !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
-   subroutine book_step(domain, dofs, scheme, constraint, reaction, contact_force, old, new, damping_stress, ledger)
-      type(domain_t), intent(in) :: domain
-      type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: reaction(:)        !< Residual with every row kept. (unknowns) [kN, m3/s]
+   subroutine book_step(model, contact_force, run, damping_stress, ledger)
+      type(model_t), intent(in) :: model
       real(wp), intent(in) :: contact_force(:)   !< Mean forces of the contacts over the step, if there are any [kN].
                                                  !< (unknowns) or (0).
-      type(model_state_t), intent(in) :: old
-      type(model_state_t), intent(inout) :: new        !< The flows out are set.
+      type(run_t), intent(inout) :: run          !< After a step; the flows out of run%next are set.
       !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
       real(wp), allocatable, intent(inout) :: damping_stress(:, :)
       type(ledger_t), intent(inout) :: ledger
@@ -69,31 +66,32 @@ contains
       real(wp), allocatable :: change(:, :), held(:, :)
       integer :: e
 
-      ledger%kinetic = kinetic_energy(domain, dofs, constraint%mass, new)
-      allocate (change, source=new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))
-      allocate (held, source=moved_by_supports(dofs, constraint, change))
-      do e = 1, size(domain%mesh%t6, 2)
-         if (.not. is_present(new, e)) cycle
-         associate (node => domain%mesh%t6(:, e))
-            call add_work_of_element(domain, e, scheme, old, new, damping_stress, change(:, node), work)
-            ledger%supports = ledger%supports + work_to_move_element(domain, e, scheme, old, new, damping_stress, &
-                                                                     held(:, node))
-            if (.not. domain%with_w .or. .not. scheme%has_rates) cycle
-            if (domain%regions(domain%region_of(e))%drainage == COUPLED) &
-               call book_seepage(domain, e, scheme, old, new, ledger)
-         end associate
-      end do
-      work%damping = work%damping + work_of_linear_forces(constraint%linear, .true., dofs, old, new, change)
-      work%skeleton = work%skeleton + work_of_linear_forces(constraint%linear, .false., dofs, old, new, change)
-      ledger%supports = ledger%supports + work_of_linear_forces(constraint%linear, .true., dofs, old, new, held) &
-                        + work_of_linear_forces(constraint%linear, .false., dofs, old, new, held)
-      ledger%skeleton = ledger%skeleton + work%skeleton
-      ledger%pores = ledger%pores + work%pores
-      ledger%gravity = ledger%gravity + work%gravity
-      ledger%damping = ledger%damping + work%damping
-      call book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
-      call book_outflow(dofs, scheme, constraint, reaction, old%outflow, new%outflow, ledger)
-      if (allocated(damping_stress)) call follow_damping(domain, scheme, old, new, damping_stress)
+      associate (domain => model%domain, dofs => model%dofs, old => run%state, new => run%next, &
+                 linear => run%constraint%linear)
+         ledger%kinetic = kinetic_energy(domain, dofs, run%constraint%mass, new)
+         allocate (change, source=new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))
+         allocate (held, source=moved_by_supports(dofs, run%constraint, change))
+         do e = 1, size(domain%mesh%t6, 2)
+            if (.not. is_present(new, e)) cycle
+            associate (node => domain%mesh%t6(:, e))
+               call add_work_of_element(domain, e, run, damping_stress, change(:, node), work)
+               ledger%supports = ledger%supports + work_to_move_element(domain, e, run, damping_stress, held(:, node))
+               if (.not. domain%with_w .or. .not. run%scheme%has_rates) cycle
+               if (domain%regions(domain%region_of(e))%drainage == COUPLED) call book_seepage(domain, e, run, ledger)
+            end associate
+         end do
+         work%damping = work%damping + work_of_linear_forces(linear, .true., dofs, old, new, change)
+         work%skeleton = work%skeleton + work_of_linear_forces(linear, .false., dofs, old, new, change)
+         ledger%supports = ledger%supports + work_of_linear_forces(linear, .true., dofs, old, new, held) &
+                           + work_of_linear_forces(linear, .false., dofs, old, new, held)
+         ledger%skeleton = ledger%skeleton + work%skeleton
+         ledger%pores = ledger%pores + work%pores
+         ledger%gravity = ledger%gravity + work%gravity
+         ledger%damping = ledger%damping + work%damping
+         call book_forces(dofs, run, contact_force, change, ledger)
+         call book_outflow(dofs, run, ledger)
+         if (allocated(damping_stress)) call follow_damping(domain, run, damping_stress)
+      end associate
    end subroutine book_step
 
    !> Stress that the damping in proportion to the stiffness has in the equations of a step: there it stands at the
@@ -109,14 +107,13 @@ contains
 
    !> Takes the stress of the damping to the end of the step: such that the one of the equations lies between both at
    !> the level of values, as every other force does. None in a step without inertia. docs/theory/host.md section 9.
-   subroutine follow_damping(domain, scheme, old, new, damping_stress)
+   subroutine follow_damping(domain, run, damping_stress)
       type(domain_t), intent(in) :: domain
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
+      type(run_t), intent(in) :: run
       real(wp), intent(inout) :: damping_stress(:, :)
       integer :: e, p
 
-      if (.not. scheme%has_inertia) then
+      if (.not. run%scheme%has_inertia) then
          damping_stress = 0.0_wp
          return
       end if
@@ -124,8 +121,8 @@ contains
          associate (region => domain%regions(domain%region_of(e)))
             do p = (e - 1)*domain%rule + 1, e*domain%rule
                damping_stress(:, p) = damping_stress(:, p) &
-                  + (damping_in(region, scheme, new%stress(1:4, p) - old%stress(1:4, p)) &
-                     - damping_stress(:, p))/scheme%l_f
+                  + (damping_in(region, run%scheme, run%next%stress(1:4, p) - run%state%stress(1:4, p)) &
+                     - damping_stress(:, p))/run%scheme%l_f
             end do
          end associate
       end do
@@ -149,12 +146,10 @@ contains
    end function moved_by_supports
 
    !> Forces on nodes: loads, contacts, and the inertia of bodies that supports move.
-   subroutine book_forces(dofs, scheme, constraint, contact_force, old, new, change, ledger)
+   subroutine book_forces(dofs, run, contact_force, change, ledger)
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
+      type(run_t), intent(in) :: run
       real(wp), intent(in) :: contact_force(:)
-      type(model_state_t), intent(in) :: old, new
       real(wp), intent(in) :: change(:, :)
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: load, touch
@@ -163,7 +158,7 @@ contains
       touch = 0.0_wp
       do i = 1, dofs%n
          if (dofs%field(i) > DISPLACEMENTS) cycle
-         associate (f => dofs%field(i), k => dofs%node(i))
+         associate (f => dofs%field(i), k => dofs%node(i), constraint => run%constraint, scheme => run%scheme)
             load = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i)) - constraint%offset(i)
             if (size(contact_force) > 0) touch = contact_force(i)
             ledger%loads = ledger%loads + load*change(f, k)
@@ -171,7 +166,7 @@ contains
             if (.not. constraint%fixed(i)) cycle
             ledger%supports = ledger%supports + (touch - load)*change(f, k)
             if (scheme%has_inertia) ledger%supports = ledger%supports &
-               + constraint%mass(i)*(new%v(f, k) - old%v(f, k))/scheme%dt*change(f, k)
+               + constraint%mass(i)*(run%next%v(f, k) - run%state%v(f, k))/scheme%dt*change(f, k)
          end associate
       end do
    end subroutine book_forces
@@ -179,54 +174,51 @@ contains
    !> Flow out through prescribed pressures and past limits, less the rain: what runs off never entered. Its mean over
    !> the step is that of the rate of what is stored, so that what has left is what is missing inside, whatever the
    !> steps. docs/theory/host.md section 9.
-   subroutine book_outflow(dofs, scheme, constraint, reaction, before, after, ledger)
+   subroutine book_outflow(dofs, run, ledger)
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: reaction(:)
-      real(wp), intent(in) :: before(OUTFLOWS)   !< Flows of both fluids and of air as the scheme follows them [m3/s].
-      real(wp), intent(out) :: after(OUTFLOWS)
+      type(run_t), intent(inout) :: run
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: flow(OUTFLOWS), mean(OUTFLOWS)
       integer :: i
 
-      after = 0.0_wp
-      if (.not. scheme%has_rates) return
-      flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
-      do i = 1, dofs%n
-         if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
-         if (dofs%field(i) /= AT_P_C) cycle
-         if (constraint%fixed(i)) flow(2) = flow(2) - reaction(i)
-         if (constraint%air(dofs%node(i))) flow = flow - reaction(i)
-      end do
-      after = before + (flow - before)/scheme%l_p
-      mean = before + scheme%gamma_1*(after - before)
-      ledger%outflow = ledger%outflow + scheme%dt*mean(1)
-      ledger%outflow_air = ledger%outflow_air + scheme%dt*mean(2)
+      associate (scheme => run%scheme, constraint => run%constraint, reaction => run%system%reaction, &
+                 before => run%state%outflow, after => run%next%outflow)
+         after = 0.0_wp
+         if (.not. scheme%has_rates) return
+         flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
+         do i = 1, dofs%n
+            if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
+            if (dofs%field(i) /= AT_P_C) cycle
+            if (constraint%fixed(i)) flow(2) = flow(2) - reaction(i)
+            if (constraint%air(dofs%node(i))) flow = flow - reaction(i)
+         end do
+         after = before + (flow - before)/scheme%l_p
+         mean = before + scheme%gamma_1*(after - before)
+         ledger%outflow = ledger%outflow + scheme%dt*mean(1)
+         ledger%outflow_air = ledger%outflow_air + scheme%dt*mean(2)
+      end associate
    end subroutine book_outflow
 
    !> Work that moves an element as a step does, inertia included [kJ].
-   real(wp) function work_to_move_element(domain, e, scheme, old, new, damping_stress, du) result(total)
+   real(wp) function work_to_move_element(domain, e, run, damping_stress, du) result(total)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
+      type(run_t), intent(in) :: run
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t) :: work
 
       total = 0.0_wp
       if (.not. any(abs(du) > 0.0_wp)) return
-      call add_work_of_element(domain, e, scheme, old, new, damping_stress, du, work)
+      call add_work_of_element(domain, e, run, damping_stress, du, work)
       total = work%skeleton + work%pores + work%damping + work%inertia - work%gravity
    end function work_to_move_element
 
    !> Work of the mean forces in an element at displacements of its nodes.
-   subroutine add_work_of_element(domain, e, scheme, old, new, damping_stress, du, work)
+   subroutine add_work_of_element(domain, e, run, damping_stress, du, work)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
+      type(run_t), intent(in) :: run
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
@@ -234,69 +226,70 @@ contains
       real(wp) :: dv(DISPLACEMENTS, 6), v(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
-      gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
-      node = domain%mesh%t6(:, e)
-      dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
-      v = (new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node))/scheme%dt
-      associate (carriers => domain%carriers(:domain%n_carriers(e), e))
-         middle(:, :size(carriers)) = 0.5_wp*(old%x(AT_P_W:, carriers) + new%x(AT_P_W:, carriers))
-      end associate
-      do g = 1, domain%rule
-         at = (e - 1)*domain%rule + g
-         associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
-            strain = strain_of(gp, du)
-            work%skeleton = work%skeleton &
-               + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
-            s = 0.5_wp*(old%s(at) + new%s(at))
-            n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
-            p = pressures_at(domain, e, g, middle)
-            work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
-            rho = mixture_density(domain, region, n, s)
-            work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
-            if (allocated(region%against_rate) .and. scheme%has_rates) work%damping = work%damping &
-               + gp%weight*dot_product(matmul(region%against_rate, strain_of(gp, v)), strain)
-            if (.not. scheme%has_inertia) cycle
-            push = gp%weight*rho*matmul(du, gp%n)
-            work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt
-            if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
-               *dot_product(push, 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) + new%v(:DISPLACEMENTS, node), gp%n))
-            if (.not. region%stiffness_damping > 0.0_wp) cycle
-            damping = damping_in(region, scheme, new%stress(1:4, at) - old%stress(1:4, at))
-            damping = damping_stress(:, at) + 0.5_wp/scheme%l_f*(damping - damping_stress(:, at))
-            work%damping = work%damping + gp%weight*dot_product(damping, strain)
+      associate (scheme => run%scheme, old => run%state, new => run%next)
+         gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
+         node = domain%mesh%t6(:, e)
+         dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
+         v = (new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node))/scheme%dt
+         associate (carriers => domain%carriers(:domain%n_carriers(e), e))
+            middle(:, :size(carriers)) = 0.5_wp*(old%x(AT_P_W:, carriers) + new%x(AT_P_W:, carriers))
          end associate
-      end do
+         do g = 1, domain%rule
+            at = (e - 1)*domain%rule + g
+            associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
+               strain = strain_of(gp, du)
+               work%skeleton = work%skeleton &
+                  + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
+               s = 0.5_wp*(old%s(at) + new%s(at))
+               n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
+               p = pressures_at(domain, e, g, middle)
+               work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
+               rho = mixture_density(domain, region, n, s)
+               work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
+               if (allocated(region%against_rate) .and. scheme%has_rates) work%damping = work%damping &
+                  + gp%weight*dot_product(matmul(region%against_rate, strain_of(gp, v)), strain)
+               if (.not. scheme%has_inertia) cycle
+               push = gp%weight*rho*matmul(du, gp%n)
+               work%inertia = work%inertia + dot_product(push, matmul(dv, gp%n))/scheme%dt
+               if (region%damping > 0.0_wp) work%damping = work%damping + region%damping &
+                  *dot_product(push, 0.5_wp*matmul(old%v(:DISPLACEMENTS, node) + new%v(:DISPLACEMENTS, node), gp%n))
+               if (.not. region%stiffness_damping > 0.0_wp) cycle
+               damping = damping_in(region, scheme, new%stress(1:4, at) - old%stress(1:4, at))
+               damping = damping_stress(:, at) + 0.5_wp/scheme%l_f*(damping - damping_stress(:, at))
+               work%damping = work%damping + gp%weight*dot_product(damping, strain)
+            end associate
+         end do
+      end associate
    end subroutine add_work_of_element
 
    !> Energy that seepage dissipates in an element.
-   subroutine book_seepage(domain, e, scheme, old, new, ledger)
+   subroutine book_seepage(domain, e, run, ledger)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
+      type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
       type(relative_t) :: rel
       real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity
       integer :: g, p, n_p
 
-      gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
+      gravity = 0.5_wp*(gravity_on(run%state, e) + gravity_on(run%next, e))
       n_p = domain%n_p
       associate (node => domain%mesh%t6(:, e))
-         middle = 0.5_wp*(old%x(AT_P_W:AT_P_C, node) + new%x(AT_P_W:AT_P_C, node))
+         middle = 0.5_wp*(run%state%x(AT_P_W:AT_P_C, node) + run%next%x(AT_P_W:AT_P_C, node))
       end associate
       do g = 1, domain%rule
          p = (e - 1)*domain%rule + g
          associate (gp => domain%gauss(g, e), f => domain%fluids, &
                     law => domain%permeabilities(domain%regions(domain%region_of(e))%permeability))
-            rel = relative_permeability(law, 0.5_wp*(old%s(p) + new%s(p)))
+            rel = relative_permeability(law, 0.5_wp*(run%state%s(p) + run%next%s(p)))
             kappa = law%intrinsic*rel%w/f%eta_w
             drive = matmul(middle(AT_P_W, :n_p), gp%dm(:n_p, :)) + [0.0_wp, f%rho_w*gravity]
-            ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
+            ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
             if (.not. domain%with_c) cycle
             kappa = law%intrinsic*rel%a/f%eta_a
             drive = matmul(middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p), gp%dm(:n_p, :)) + [0.0_wp, &
                f%rho_a*gravity]
-            ledger%seepage = ledger%seepage + scheme%dt*gp%weight*kappa*dot_product(drive, drive)
+            ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
          end associate
       end do
    end subroutine book_seepage

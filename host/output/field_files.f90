@@ -7,7 +7,7 @@ module field_files
    use kinds, only: wp
    use model_types, only: model_t
    use porous_domain, only: domain_t, model_state_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use files, only: write_whole, bytes_of
@@ -68,11 +68,10 @@ contains
    end subroutine exchange
 
    !> A new run writes its mesh and its start. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(field_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (run%steps > 0) return
@@ -82,20 +81,19 @@ contains
    end subroutine begins
 
    !> Writes the fields after a step where they are due within a stage. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine taken_over(self, model, run, news, fault)
+   subroutine taken_over(self, model, run, fault)
       class(field_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp) :: now, before
       logical :: due
 
-      if (news%last) return
+      if (run%news%last) return
       due = .false.
       now = run%state%time - run%at%t_start
-      before = run%state%time - news%scheme%dt - run%at%t_start
-      associate (stage => model%stages(news%stage))
+      before = run%state%time - run%scheme%dt - run%at%t_start
+      associate (stage => model%stages(run%at%stage))
          if (stage%output_dt > 0.0_wp) then
             due = abs(now/stage%output_dt - anint(now/stage%output_dt)) < ON_TIME
          else if (stage%fields > 0) then
@@ -115,11 +113,10 @@ contains
    end subroutine taken_over
 
    !> Writes the fields at the end of a stage; after a failure too. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(field_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call write_frame(self%folder, model%domain, run%state, self%times, fault)

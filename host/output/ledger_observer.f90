@@ -15,7 +15,7 @@ module ledger_observer
    use kinds, only: wp
    use linear_system, only: T_CONTACT
    use model_types, only: model_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
    use texts, only: short
@@ -63,22 +63,20 @@ contains
    end subroutine exchange
 
    !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: ledger.csv is missing or too short.
-   subroutine fits(self, model, run, news, fault)
+   subroutine fits(self, model, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
    end subroutine fits
 
    !> Opens ledger.csv. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (run%steps == 0 .and. any(model%domain%regions%stiffness_damping > 0.0_wp)) &
@@ -89,16 +87,15 @@ contains
 
    !> Books a step: energies, work, outflow, contacts; and ends a run that creates energy: in PATIENCE steps in a row
    !> more than the stage may, or in its last one. docs/theory/host.md section 9. Fault EXIT_ENERGY.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: contact_force(:)
       real(wp) :: t0
 
-      associate (ledger => self%ledger, stage => model%stages(news%stage))
+      associate (ledger => self%ledger, stage => model%stages(run%at%stage))
          if (run%at%step == 1) then
             ledger%kinetic_0 = ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
                                                                  run%state) - ledger%kinetic
@@ -111,17 +108,15 @@ contains
             contact_force = mean_contact_forces(run, model%dofs)
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
-         if (size(run%constraint%added) > 0) call add_means(run, model%dofs, news%scheme, contact_force)
-         call book_step(model%domain, model%dofs, news%scheme, run%constraint, run%system%reaction, contact_force, &
-                        run%state, run%next, self%damping_stress, ledger)
-         call book_creation(news%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &
+         if (size(run%constraint%added) > 0) call add_means(run, model%dofs, run%scheme, contact_force)
+         call book_step(model, contact_force, run, self%damping_stress, ledger)
+         call book_creation(run%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &
                             ledger)
          if (has_inertia(stage%kind)) call count_creation(stage%created_energy, ledger)
-         self%indicators = indicators_of(model, news%stage, news%scheme%dt, run%constraint%mass, run%state, &
-                                         run%next)
-         news%contact_work = ledger%contact
+         self%indicators = indicators_of(model, run)
+         run%news%contact_work = ledger%contact
          if (.not. has_inertia(stage%kind)) return
-         if (ledger%overdue < merge(1.0_wp, PATIENCE, news%last)) return
+         if (ledger%overdue < merge(1.0_wp, PATIENCE, run%news%last)) return
          call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(run%next%time)// &
                     ' s: the run has created '//amount(ledger)//', allowed '//short(100*stage%created_energy)// &
                     ' %. Its results may be wrong by any factor: '//REMEDY//'; created_energy of &stage allows more.')
@@ -161,21 +156,21 @@ contains
 
    !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
    !> written.
-   subroutine taken_over(self, model, run, news, fault)
+   subroutine taken_over(self, model, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       self%ledger%dissipated = self%ledger%dissipated + run%dissipated
       if (.not. is_open(self%table)) return
-      associate (log => news%log, ledger => self%ledger)
+      associate (log => run%log, ledger => self%ledger)
          write (self%table%row, '(2(es24.16e3,","),3(i0,","),*(es14.6e3,:,","))') run%state%time, &
-            news%scheme%dt, news%stage, log%iterations, run%cuts, log%error, log%first_error, log%reduction, &
+            run%scheme%dt, run%at%stage, log%iterations, run%cuts, log%error, log%first_error, log%reduction, &
             log%correction, real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, &
             ledger%gravity, ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%dissipated, &
-            imbalance(ledger), ledger%outflow, ledger%outflow_air, news%localised, news%error, self%indicators
+            imbalance(ledger), ledger%outflow, ledger%outflow_air, run%news%localised, run%control%error, &
+            self%indicators
       end associate
       call write_row(self%table, fault)
       call hand_over(self%table, fault)
@@ -183,11 +178,10 @@ contains
 
    !> Warns at the end of a dynamic stage that has created much, on standard error, also where the run is quiet. From
    !> ALARMING_SHARE of the largest work on; nothing beyond what has ended the run.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       associate (stage => model%stages(run%at%stage), ledger => self%ledger)
@@ -200,11 +194,10 @@ contains
    end subroutine stage_ends
 
    !> Closes ledger.csv. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, model, run, news, fault)
+   subroutine ends(self, model, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call close_csv(self%table, fault)

@@ -10,7 +10,7 @@ module localisation
    use kinds, only: wp, PI
    use model_types, only: model_t
    use porous_domain, only: domain_t, model_state_t, is_present, strain_of
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS
@@ -55,11 +55,10 @@ contains
    end subroutine exchange
 
    !> Makes room for the points.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(localisation_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (run%steps == 0) allocate (self%work(size(run%state%e)), source=0.0_wp)
@@ -67,11 +66,10 @@ contains
 
    !> Books a step, gives its share to the ledger, and tells a share above TOLD_SHARE, once, on standard error. Points
    !> are looked at in parallel, and added up in their order.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(localisation_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: work(:)
       logical, allocatable :: lost(:)
@@ -97,14 +95,14 @@ contains
       worst = maxloc(self%work, dim=1)
       if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
                                               self%normal)
-      news%localised = self%localised/max(self%shear, tiny(1.0_wp))
-      if (news%localised > TOLD_SHARE .and. .not. self%is_above) then
+      run%news%localised = self%localised/max(self%shear, tiny(1.0_wp))
+      if (run%news%localised > TOLD_SHARE .and. .not. self%is_above) then
          self%is_above = .true.
          self%since = run%next%time
       end if
       if (self%told .or. .not. self%is_above) return
       self%told = .true.
-      call tell(self, model%domain, model%stages(news%stage)%name, run%next%time, news%localised, worst)
+      call tell(self, model%domain, model%stages(run%at%stage)%name, run%next%time, run%news%localised, worst)
    end subroutine step
 
    !> The points of an element: shear work of the step, where positive, and whether the tangent has lost ellipticity.
@@ -154,14 +152,13 @@ contains
    end subroutine tell
 
    !> Forgets all where displacements begin to count anew.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(localisation_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
-      if (.not. (news%complete .and. model%stages(run%at%stage)%zero_displacements)) return
+      if (.not. (run%news%complete .and. model%stages(run%at%stage)%zero_displacements)) return
       self%shear = 0.0_wp
       self%localised = 0.0_wp
       self%work = 0.0_wp

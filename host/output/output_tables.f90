@@ -12,10 +12,9 @@ module output_tables
    use named_points, only: unknowns_at, motion_at
    use porous_domain, only: domain_t, model_state_t
    use reaction_rows, only: reaction_columns, reaction_row
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
-   use run_tables, only: open_table, exchange_table
-   use surface_forces, only: surface_forces_t
+   use run_tables, only: open_table, exchange_table, write_table
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -49,11 +48,10 @@ contains
 
    !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: a table is missing, too short or cannot be
    !> written.
-   subroutine fits(self, model, run, news, fault)
+   subroutine fits(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call check_csv(self%folder//'/histories.csv', self%history%bytes, fault)
@@ -64,11 +62,10 @@ contains
    end subroutine fits
 
    !> Opens the tables; a new run writes its start. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       logical :: resume
 
@@ -82,21 +79,19 @@ contains
    end subroutine begins
 
    !> Writes the rows of a step that are due. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine taken_over(self, model, run, news, fault)
+   subroutine taken_over(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (is_open(self%contact)) then
-         write (self%contact%row, NUMBERS) contact_row(model, run%system%contacts, news%scheme%dt, run%state, &
-                                                       news%contact_work)
+         write (self%contact%row, NUMBERS) contact_row(model, run)
          call write_row(self%contact, fault)
       end if
-      if (mod(run%at%step, model%stages(news%stage)%every) == 0 .or. news%last) then
+      if (mod(run%at%step, model%stages(run%at%stage)%every) == 0 .or. run%news%last) then
          call write_history(self%history, model, run%state, fault)
-         if (fault%code == 0) call write_reactions(self, model, run, news%scheme%dt, fault)
+         if (fault%code == 0) call write_reactions(self, model, run, fault)
       end if
       call hand_over(self%history, fault)
       call hand_over(self%contact, fault)
@@ -105,11 +100,10 @@ contains
 
    !> Ends the table of reactions, and writes the tables of a stage; after a failure too, for what was computed. Fault
    !> EXIT_OUTPUT: a file cannot be written.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: name
 
@@ -117,15 +111,15 @@ contains
       self%reactions%bytes = 0
       name = trim(model%stages(run%at%stage)%name)
       call write_fields(self%folder, model%domain, name, run%state, fault)
-      if (fault%code == 0) call write_contact_nodes(self%folder, model, run%system%contacts, name, run%state, fault)
+      if (allocated(run%system%contacts)) call write_table(self%folder//'/contact_'//name//'.csv', &
+         'contact,r,z,weight,coverage,gap,pressure,shear', contact_nodes(model, run), fault)
    end subroutine stage_ends
 
    !> Closes the tables; the first that fails is reported. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, model, run, news, fault)
+   subroutine ends(self, model, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call close_csv(self%history, fault)
@@ -176,11 +170,10 @@ contains
 
    !> A row of reactions_STAGE.csv after a step. The file belongs to the stage: it begins with its first row, or goes on
    !> where it was at the checkpoint. Units: see reaction_row. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine write_reactions(self, model, run, dt, fault)
+   subroutine write_reactions(self, model, run, fault)
       type(table_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
-      real(wp), intent(in) :: dt   !< [s]
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: head, path
 
@@ -192,8 +185,7 @@ contains
             call open_table(path, head, self%reactions%bytes > 0, self%reactions, fault)
             if (fault%code /= 0) return
          end if
-         write (self%reactions%row, NUMBERS) reaction_row(model, stage, run%constraint, &
-                                                            run%system%reaction, run%state%time, dt)
+         write (self%reactions%row, NUMBERS) reaction_row(model, run)
          call write_row(self%reactions, fault)
       end associate
    end subroutine write_reactions
@@ -215,29 +207,18 @@ contains
       type(model_state_t), intent(in) :: state
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS, size(state%x, 2))
-      type(csv_t) :: table
-      integer :: i, e, g, p
+      integer :: i, e, g
 
       call all_pressures(domain, state, x)
-      call new_csv(folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', table, fault)
-      do i = 1, size(state%x, 2)
-         if (fault%code /= 0) exit
-         write (table%row, NUMBERS) domain%mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i)
-         call write_row(table, fault)
-      end do
-      call close_csv(table, fault)
-      if (fault%code /= 0) return
-      call new_csv(folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', table, fault)
-      do e = 1, size(domain%mesh%t6, 2)
-         do g = 1, domain%rule
-            if (fault%code /= 0) exit
-            p = (e - 1)*domain%rule + g
-            write (table%row, NUMBERS) domain%gauss(g, e)%x, domain%gauss(g, e)%weight, state%stress(1:4, p), &
-               state%e(p), state%s(p)
-            call write_row(table, fault)
-         end do
-      end do
-      call close_csv(table, fault)
+      call write_table(folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', &
+                       reshape([(domain%mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i), i=1, size(x, 2))], &
+                               [8, size(x, 2)]), fault)
+      associate (gauss => domain%gauss, n => domain%rule)
+         call write_table(folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', &
+                          reshape([((gauss(g, e)%x, gauss(g, e)%weight, state%stress(1:4, (e - 1)*n + g), &
+                                     state%e((e - 1)*n + g), state%s((e - 1)*n + g), g=1, n), e=1, size(gauss, 2))], &
+                                  [9, size(gauss)]), fault)
+      end associate
    end subroutine write_fields
 
    !> points.csv: the place of every point of the scene, and that of its stresses, the nearest quadrature point, both at
@@ -261,29 +242,4 @@ contains
       end do
       call close_csv(table, fault)
    end subroutine write_points
-
-   !> contact_STAGE.csv: slave nodes of the contacts that act in the stage. Units: see contact_nodes. Fault EXIT_OUTPUT:
-   !> it cannot be written.
-   subroutine write_contact_nodes(folder, model, contacts, stage, state, fault)
-      character(*), intent(in) :: folder
-      type(model_t), intent(in) :: model
-      class(surface_forces_t), allocatable, intent(in) :: contacts
-      character(*), intent(in) :: stage   !< Name of the stage.
-      type(model_state_t), intent(in) :: state
-      type(fault_t), intent(inout) :: fault
-      real(wp), allocatable :: values(:, :)
-      type(csv_t) :: table
-      integer :: i
-
-      if (.not. allocated(contacts)) return
-      call contact_nodes(model, contacts, state, values)
-      call new_csv(folder//'/contact_'//stage//'.csv', 'contact,r,z,weight,coverage,gap,pressure,shear', table, &
-                     fault)
-      do i = 1, size(values, 2)
-         if (fault%code /= 0) exit
-         write (table%row, NUMBERS) values(:, i)
-         call write_row(table, fault)
-      end do
-      call close_csv(table, fault)
-   end subroutine write_contact_nodes
 end module output_tables

@@ -11,7 +11,7 @@ module pressure_alarm
    use faults, only: fault_t
    use model_types, only: model_t
    use porous_domain, only: model_state_t, is_present, COUPLED
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: AT_P_W
@@ -41,14 +41,13 @@ module pressure_alarm
    end type pressure_alarm_t
 contains
    !> Warns of each once a run, on standard error, also where the run is quiet.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(pressure_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
-      associate (stage => model%stages(news%stage))
+      associate (stage => model%stages(run%at%stage))
          call warn_of_oscillation(model, stage, run%next, self%lines, self%told_oscillation)
          call warn_lost_pressure(model, run%next, self%told_pressure)
          call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, self%told_inflow)

@@ -4,7 +4,7 @@
 module progress_line
    use, intrinsic :: iso_fortran_env, only: output_unit
    use faults, only: fault_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use wall_clock, only: clock
    use kinds, only: wp
@@ -31,11 +31,10 @@ module progress_line
    end type progress_observer_t
 contains
    !> Shows the step, the share of the stage and the time that is left.
-   subroutine taken_over(self, model, run, news, fault)
+   subroutine taken_over(self, model, run, fault)
       class(progress_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: line
       real(wp) :: now, left
@@ -70,26 +69,24 @@ contains
    end subroutine taken_over
 
    !> Shows an attempt that is not accepted, as often as that.
-   subroutine repeated(self, model, run, news, fault)
+   subroutine repeated(self, model, run, fault)
       class(progress_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (.not. to_terminal()) return
       if (clock() - self%last_line < PERIOD) return
       self%last_line = clock()
       call write_line('Stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%state%time)// &
-                      ' s: a step of '//short(news%scheme%dt)//' s is repeated, cuts '//whole(run%cuts), self)
+                      ' s: a step of '//short(run%scheme%dt)//' s is repeated, cuts '//whole(run%cuts), self)
    end subroutine repeated
 
    !> Empties the line on the terminal, so that another can be written.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(progress_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (self%standing > 0) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', self%standing)//achar(13)

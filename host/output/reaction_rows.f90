@@ -7,9 +7,8 @@ module reaction_rows
    use boundary_conditions, only: prescribing_fixes, forces_of_supports
    use boundary_loads, only: force_of
    use csv, only: quoted
-   use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, factor_at
-   use prescribed_values, only: constraint_t
+   use run_state, only: run_t
    use scene_parts, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -109,20 +108,15 @@ contains
 
    !> Row after a step. Forces hold where the step is in balance: at the level of its values. Times [s], forces [kN],
    !> flows [m3/s], in the order of reaction_columns: docs/theory/host.md section 9.1.
-   function reaction_row(model, stage, constraint, reaction, time, dt) result(row)
+   function reaction_row(model, run) result(row)
       type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: reaction(:)   !< Residual with every row kept [kN, m3/s]. (unknowns)
-      real(wp), intent(in) :: time, dt      !< At the end of the step, and its length [s].
+      type(run_t), intent(in) :: run   !< After a step that was taken over.
       real(wp), allocatable :: row(:)
-      type(scheme_t) :: scheme
       integer, allocatable :: list(:, :)
       real(wp), allocatable :: sums(:, :)
       integer :: i, k
 
-      scheme = make_scheme(stage%kind, stage%rho_inf, dt)
-      call list_columns(model, stage, list)
+      call list_columns(model, model%stages(run%at%stage), list)
       allocate (sums(SUFFIXES, size(model%domain%mesh%groups)), source=0.0_wp)
       call add_reactions()
       call add_loads()
@@ -133,7 +127,7 @@ contains
             end associate
          end do
       end do
-      row = [time, time - (1 - scheme%l_f)*dt, picked()]
+      row = [run%state%time, run%state%time - (1 - run%scheme%l_f)*run%scheme%dt, picked()]
    contains
       function picked() result(values)
          real(wp) :: values(size(list, 2))
@@ -146,10 +140,10 @@ contains
          integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i, k, group
          real(wp) :: w, a
 
-         call prescribing_fixes(model, stage, model%dofs, constraint, time, by, air_by)
-         sums(:DISPLACEMENTS, :) = forces_of_supports(model, by, reaction)
-         associate (dofs => model%dofs)
-            if (.not. scheme%has_rates .or. .not. model%domain%with_w) return
+         call prescribing_fixes(model, model%stages(run%at%stage), run%constraint, run%state%time, by, air_by)
+         sums(:DISPLACEMENTS, :) = forces_of_supports(model, by, run%system%reaction)
+         associate (dofs => model%dofs, constraint => run%constraint, reaction => run%system%reaction)
+            if (.not. run%scheme%has_rates .or. .not. model%domain%with_w) return
             do i = 1, size(air_by)
                if (dofs%of(AT_P_W, i) == 0) cycle
                w = reaction(dofs%of(AT_P_W, i))
@@ -182,10 +176,10 @@ contains
 
          do i = 1, size(model%loads)
             associate (load => model%loads(i), field => model%dofs%field)
-               if (.not. acts_in(load%stages, stage%name)) cycle
+               if (.not. acts_in(load%stages, model%stages(run%at%stage)%name)) cycle
                vector = force_of(load, 1.0_wp)
-               factor = factor_at(model, load%amplitude, time - dt)
-               factor = factor + scheme%l_f*(factor_at(model, load%amplitude, time) - factor)
+               factor = factor_at(model, load%amplitude, run%state%time - run%scheme%dt)
+               factor = factor + run%scheme%l_f*(factor_at(model, load%amplitude, run%state%time) - factor)
                associate (sum_of => sums(:, load%group))
                   select case (load%kind)
                   case (LOAD_WATER, LOAD_RAIN)

@@ -7,7 +7,7 @@ module run_folder
    use field_files, only: check_mesh
    use folder_lock, only: lock_folder, unlock_folder
    use model_types, only: model_t
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use scene_parts, only: FINGERPRINT_LENGTH
    implicit none (type, external)
@@ -32,22 +32,20 @@ contains
    end subroutine exchange
 
    !> Refuses a folder that does not hold the run. Fault EXIT_RESTART: its mesh is of another scene.
-   subroutine fits(self, model, run, news, fault)
+   subroutine fits(self, model, run, fault)
       class(folder_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call check_mesh(self%folder, self%origin, fault)
    end subroutine fits
 
    !> Takes the folder, which a new run makes. Fault EXIT_OUTPUT: another run writes to it.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(folder_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (run%steps == 0) self%origin = model%origin%fingerprint
@@ -55,11 +53,10 @@ contains
    end subroutine begins
 
    !> Gives the folder free.
-   subroutine ends(self, model, run, news, fault)
+   subroutine ends(self, model, run, fault)
       class(folder_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       call unlock_folder(self%folder)

@@ -11,7 +11,7 @@ module run_summary
    use named_points, only: unknowns_at
    use porous_domain, only: UNDRAINED
    use run_cost, only: print_cost
-   use run_observer, only: observer_t, news_t
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
@@ -54,11 +54,10 @@ contains
    end subroutine exchange
 
    !> Peaks before the first step are zero.
-   subroutine begins(self, model, run, news, fault)
+   subroutine begins(self, model, run, fault)
       class(summary_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (run%steps > 0) return
@@ -68,11 +67,10 @@ contains
    end subroutine begins
 
    !> Notes the largest values.
-   subroutine taken_over(self, model, run, news, fault)
+   subroutine taken_over(self, model, run, fault)
       class(summary_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS)
       integer :: i, f
@@ -83,31 +81,29 @@ contains
             if (.not. abs(x(f)) > abs(self%peaks%value(f, i))) cycle
             self%peaks%value(f, i) = x(f)
             self%peaks%time(f, i) = run%state%time
-            self%peaks%dt(f, i) = news%scheme%dt
+            self%peaks%dt(f, i) = run%scheme%dt
          end do
       end do
    end subroutine taken_over
 
    !> Says how a stage went that has come to its end.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(summary_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
-      if (news%complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '// &
+      if (run%news%complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '// &
          trim(model%stages(run%at%stage)%name)//': '//counted(run%at%step, 'step')//', time '// &
          short(run%state%time)//' s, '//counted(run%iterations, 'linear solve')//' and '// &
          counted(run%cuts, 'cut')//' so far.'
    end subroutine stage_ends
 
    !> Says what came of the run, and what it has cost.
-   subroutine ends(self, model, run, news, fault)
+   subroutine ends(self, model, run, fault)
       class(summary_observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       if (run%steps == 0) return

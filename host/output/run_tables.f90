@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> Tables of a run that a restart goes on with, row by row.
+!> Tables of a run: such that a restart goes on with, row by row, and such that are written as a whole.
 module run_tables
    use archive, only: archive_t
-   use csv, only: csv_t, new_csv, resume_csv, flush_csv, is_open
+   use csv, only: csv_t, new_csv, resume_csv, flush_csv, close_csv, write_row, is_open, NUMBERS
    use faults, only: fault_t
+   use kinds, only: wp
    implicit none (type, external)
    private
-   public :: open_table, exchange_table
+   public :: open_table, exchange_table, write_table
 contains
    !> A new table; or, after a restart, the one of the run as it was at its checkpoint. Fault EXIT_OUTPUT: it cannot be
    !> written.
@@ -35,4 +36,22 @@ contains
       if (fault%code /= 0) call archive%refuse()
       call archive%exchange(name//'_bytes', table%bytes, '-', 'bytes of the table '//name)
    end subroutine exchange_table
+
+   !> A table as a whole, unless there is a fault already. Fault EXIT_OUTPUT: it cannot be written.
+   subroutine write_table(path, head, values, fault)
+      character(*), intent(in) :: path, head
+      real(wp), intent(in) :: values(:, :)   !< (columns, rows)
+      type(fault_t), intent(inout) :: fault
+      type(csv_t) :: table
+      integer :: i
+
+      if (fault%code /= 0) return
+      call new_csv(path, head, table, fault)
+      do i = 1, size(values, 2)
+         if (fault%code /= 0) exit
+         write (table%row, NUMBERS) values(:, i)
+         call write_row(table, fault)
+      end do
+      call close_csv(table, fault)
+   end subroutine write_table
 end module run_tables

@@ -9,7 +9,7 @@ module start_report
    use start_findings, only: balance_t
    use model_types, only: model_t
    use run_cost, only: size_of_run
-   use run_observer, only: observers_t, news_t, FITS
+   use run_observer, only: observers_t, FITS
    use run_state, only: run_t, act_contacts
    use scene_types, only: scene_t
    use scene_warnings, only: warn_of_scene
@@ -28,7 +28,6 @@ contains
       logical, intent(in) :: quiet, verbose, only_check
       type(balance_t) :: balance
       type(contact_alarm_t) :: contacts
-      type(news_t) :: news
       type(fault_t) :: none
 
       if (.not. quiet) call announce(model, run, verbose)
@@ -39,8 +38,8 @@ contains
       call warn_of_scene(scene, model, run%tension, balance)
       if (.not. only_check) return
       call act_contacts(model, model%stages(1), run%system%contacts)
-      news%stage = 1
-      call contacts%stage_begins(model, run, news, none)
+      run%at%stage = 1
+      call contacts%stage_begins(model, run, none)
    end subroutine report_start
 
    !> Says what is going to run.
@@ -74,10 +73,9 @@ contains
       character(*), intent(in) :: restart, folder   !< Path of the checkpoint, empty: none; folder of the results.
       logical, intent(in) :: quiet
       type(fault_t), intent(inout) :: fault
-      type(news_t) :: news
 
       if (restart == '') return
-      call observers%tell(FITS, model, run, news, fault)
+      call observers%tell(FITS, model, run, fault)
       if (fault%code /= 0 .or. quiet) return
       write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
          ', step '//whole(run%at%step)//', time '//short(run%state%time)// &

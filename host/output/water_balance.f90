@@ -7,12 +7,10 @@ module water_balance
    use linear_forces, only: water_through_dashpots
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
-   use generalised_alpha, only: scheme_t
    use kinds, only: wp
    use model_types, only: model_t
-   use porous_domain, only: domain_t, model_state_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
-   use prescribed_values, only: constraint_t
-   use run_observer, only: observer_t, news_t
+   use porous_domain, only: domain_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
+   use run_observer, only: observer_t
    use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -59,31 +57,28 @@ contains
    end subroutine exchange
 
    !> Books the water of a step.
-   subroutine step(self, model, run, news, fault)
+   subroutine step(self, model, run, fault)
       class(water_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       integer :: e
 
-      if (.not. news%scheme%has_rates .or. .not. model%domain%with_w) return
-      call book_boundaries(model%dofs, news%scheme, run%constraint, run%system%reaction, run%state, run%next, &
-                           self%water)
+      if (.not. run%scheme%has_rates .or. .not. model%domain%with_w) return
+      call book_boundaries(model%dofs, run, self%water)
       do e = 1, size(model%domain%region_of)
          if (is_present(run%state, e) .and. any(model%domain%regions(model%domain%region_of(e))%drainage == &
                                                 [COUPLED, UNDRAINED])) &
-            call book_storage(model%domain, e, run%state, run%next, self%water)
+            call book_storage(model%domain, e, run, self%water)
       end do
    end subroutine step
 
    !> Warns at the end of a stage of the water that is missing or made; not where the scene leaves a part of the rate of
    !> saturation out.
-   subroutine stage_ends(self, model, run, news, fault)
+   subroutine stage_ends(self, model, run, fault)
       class(water_alarm_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: of_what
       real(wp) :: missing
@@ -104,21 +99,22 @@ contains
 
    !> Adds what the pores of an element take up in a step: by their volume, their saturation and the pressure of the
    !> water.
-   pure subroutine book_storage(domain, e, old, new, water)
+   pure subroutine book_storage(domain, e, run, water)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: e
-      type(model_state_t), intent(in) :: old, new
+      type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
       real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), p(2), parts(3), n, s
       integer :: g, at
 
-      associate (node => domain%mesh%t6(:, e), carriers => domain%carriers(:domain%n_carriers(e), e))
+      associate (node => domain%mesh%t6(:, e), carriers => domain%carriers(:domain%n_carriers(e), e), &
+                 old => run%state, new => run%next)
          du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
          rise(:, :size(carriers)) = new%x(AT_P_W:, carriers) - old%x(AT_P_W:, carriers)
       end associate
       do g = 1, domain%rule
          at = (e - 1)*domain%rule + g
-         associate (gp => domain%gauss(g, e))
+         associate (gp => domain%gauss(g, e), old => run%state, new => run%next)
             s = 0.5_wp*(old%s(at) + new%s(at))
             n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
             p = pressures_at(domain, e, g, rise)
@@ -134,44 +130,43 @@ contains
 
    !> Adds what has come through loads and dashpots, what has left through prescribed pressures, and the
    !> magnitude of all that. Rain counts as water that did not leave.
-   pure subroutine book_boundaries(dofs, scheme, constraint, reaction, old, new, water)
+   pure subroutine book_boundaries(dofs, run, water)
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      !> (unknowns) Residual with the constrained rows kept, of the sum of both fluids where air is an unknown and of
-      !> water where its pressure is prescribed [m3/s].
-      real(wp), intent(in) :: reaction(:)
-      type(model_state_t), intent(in) :: old, new
+      type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
       real(wp) :: inflow, outflow, mean(OUTFLOWS)
       integer :: node, w, c
 
-      do node = 1, size(constraint%air)
-         w = dofs%of(AT_P_W, node)
-         if (w == 0) cycle
-         c = dofs%of(AT_P_C, node)
-         inflow = inflow_at(w)
-         outflow = 0.0_wp
-         if (constraint%fixed(w)) outflow = reaction(w)
-         if (c > 0) then
-            inflow = inflow - inflow_at(c)
-            ! Where suction is prescribed what leaves is known by the air that comes in its place.
-            if (constraint%fixed(c) .and. .not. constraint%air(node)) outflow = outflow - reaction(c)
-         end if
-         water%received = water%received + scheme%dt*inflow
-         water%moved = water%moved + scheme%dt*(abs(inflow) + abs(outflow))
-      end do
-      mean = old%outflow + scheme%gamma_1*(new%outflow - old%outflow)
-      water%left = water%left + scheme%dt*(mean(1) - mean(2))
-      water%received = water%received &
-         - water_through_dashpots(constraint%linear, dofs, constraint%air, new%x - old%x)
+      ! The residual is that of the sum of both fluids where air is an unknown, of water where air is prescribed.
+      associate (scheme => run%scheme, constraint => run%constraint, reaction => run%system%reaction)
+         do node = 1, size(constraint%air)
+            w = dofs%of(AT_P_W, node)
+            if (w == 0) cycle
+            c = dofs%of(AT_P_C, node)
+            inflow = inflow_at(w)
+            outflow = 0.0_wp
+            if (constraint%fixed(w)) outflow = reaction(w)
+            if (c > 0) then
+               inflow = inflow - inflow_at(c)
+               ! Where suction is prescribed what leaves is known by the air that comes in its place.
+               if (constraint%fixed(c) .and. .not. constraint%air(node)) outflow = outflow - reaction(c)
+            end if
+            water%received = water%received + scheme%dt*inflow
+            water%moved = water%moved + scheme%dt*(abs(inflow) + abs(outflow))
+         end do
+         mean = run%state%outflow + scheme%gamma_1*(run%next%outflow - run%state%outflow)
+         water%left = water%left + scheme%dt*(mean(1) - mean(2))
+         water%received = water%received &
+            - water_through_dashpots(constraint%linear, dofs, constraint%air, run%next%x - run%state%x)
+      end associate
    contains
       !> Mean over the step [m3/s].
       pure real(wp) function inflow_at(i)
          integer, intent(in) :: i
 
-         inflow_at = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i) - constraint%rain_0(i) &
-                             - constraint%rain_1(i)) - constraint%offset(i)
+         associate (c => run%constraint)
+            inflow_at = 0.5_wp*(c%load_0(i) + c%load_1(i) - c%rain_0(i) - c%rain_1(i)) - c%offset(i)
+         end associate
       end function inflow_at
    end subroutine book_boundaries
 end module water_balance

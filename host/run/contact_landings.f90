@@ -28,15 +28,14 @@ contains
 
    !> Whether a step in which a contact closes ends there, or has been repeated so that it should. If not, the next
    !> attempt does.
-   logical function ends_at_closing(stage, dt, run) result(ends)
+   logical function ends_at_closing(stage, run) result(ends)
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt   !< Step that was tried [s].
       type(run_t), intent(inout) :: run
 
-      associate (c => run%control)
+      associate (c => run%control, dt => run%scheme%dt)
          ends = c%located .or. dt <= SHORTEST*stage%duration
          if (ends) return
-         call end_where_it_closes(dt, run)
+         call end_where_it_closes(run)
          ends = c%controller%dt >= dt*(1 - LAST_STEP)
          c%located = .not. ends
          if (.not. ends) c%rejected = c%rejected + 1
@@ -46,14 +45,13 @@ contains
    !> The next attempt ends where a contact closes, if that is shorter than what its error asks for. The time is looked
    !> for along the motion that keeps its accelerations: exact for bodies in free flight. Where that motion closes none
    !> the step stays as its error asks for.
-   subroutine end_where_it_closes(dt, run)
-      real(wp), intent(in) :: dt   !< Step that was tried [s].
+   subroutine end_where_it_closes(run)
       type(run_t), intent(inout) :: run
       real(wp) :: open, shut, middle
       integer :: i
 
       open = 0.0_wp
-      shut = dt
+      shut = run%scheme%dt
       if (.not. closes_after(shut)) return
       do i = 1, BISECTIONS
          middle = 0.5_wp*(open + shut)

@@ -4,16 +4,14 @@
 !> checkpoint what a restart needs. An observer changes nothing that the run computes with.
 module run_observer
    use archive, only: archive_t
-   use convergence, only: control_t, log_t
    use faults, only: fault_t
-   use generalised_alpha, only: scheme_t
    use kinds, only: wp
    use model_types, only: model_t
    use run_state, only: run_t
    use wall_clock, only: clock, add_elapsed
    implicit none (type, external)
    private
-   public :: observer_t, observers_t, slot_t, news_t
+   public :: observer_t, observers_t, slot_t
    public :: FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, ENDS
 
    !> Events that observers are told, each by the procedure of its name.
@@ -24,29 +22,16 @@ module run_observer
    integer, parameter :: UP_TO_A_FAULT(*) = [FITS, BEGINS, TAKEN_OVER]
    integer, parameter :: TIMED(*) = [BEGINS, TAKEN_OVER, STAGE_ENDS]   !< Events whose time is that of output.
 
-   !> News of a run, beside model and run: its stage, and the step that was accepted.
-   type :: news_t
-      integer :: stage = 0                 !< Number of the stage.
-      type(scheme_t) :: scheme             !< It has the length of the step, or of the attempt.
-      type(control_t) :: control           !< Limits of Newton's method in it.
-      type(log_t) :: log                   !< Log of Newton's method.
-      real(wp) :: error = 0.0_wp           !< Estimate of a controlled step's own, share of the change of its field [-].
-      logical :: last = .false.            !< The stage ends with it.
-      logical :: complete = .false.        !< A stage that ends has come to its end; else a fault has ended the run.
-      real(wp) :: localised = 0.0_wp       !< Share of the shear work without ellipticity [-], set by its observer.
-      real(wp) :: contact_work = 0.0_wp    !< Work done on contacts so far [kJ], set by the ledger, which stands first.
-      type(slot_t), pointer :: earlier(:) => null()   !< Observers before the one that is told, for a checkpoint.
-   end type news_t
-
    !> All procedures do nothing unless an observer has its own. A fault ends the run. Contacts of the run may be probed;
    !> otherwise an observer leaves the run as it is, but for the factors and slopes that a checkpoint makes it forget.
    type, abstract :: observer_t
       character(:), allocatable :: folder   !< Folder of the results; not allocated: no file is written.
+      type(slot_t), pointer :: earlier(:) => null()   !< Observers before it in the list, for a checkpoint.
    contains
       procedure :: exchange                   !< With a checkpoint.
       procedure :: fits => unheard            !< Before a restart; refuses what its files do not fit.
       procedure :: begins => unheard          !< Before the first step; run%steps > 0 in a restart.
-      procedure :: stage_begins => unheard    !< Before a stage is prepared; its contacts act.
+      procedure :: stage_begins => unheard    !< Before the stage run%at%stage is prepared; its contacts act.
       procedure :: step => unheard            !< After an accepted step: run%state before it, run%next after it. A fault
                                               !< ends the run once all have seen the step taken over.
       procedure :: taken_over => unheard      !< Afterwards: run%state after it.
@@ -77,11 +62,10 @@ contains
    end subroutine exchange
 
    !> Does nothing at an event. Faults of an observer's own procedure are those of the observer.
-   subroutine unheard(self, model, run, news, fault)
+   subroutine unheard(self, model, run, fault)
       class(observer_t), intent(inout) :: self
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
    end subroutine unheard
 
@@ -104,12 +88,11 @@ contains
    end subroutine add
 
    !> Tells the observers an event. The first fault counts, and one that there is already stays.
-   subroutine tell(self, event, model, run, news, fault)
+   subroutine tell(self, event, model, run, fault)
       class(observers_t), intent(inout), target :: self
       integer, intent(in) :: event
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
       type(fault_t) :: one
       real(wp) :: t0
@@ -121,39 +104,38 @@ contains
          if (fault%code /= 0 .and. any(event == UP_TO_A_FAULT)) exit
          k = merge(self%begun + 1 - i, i, event == ENDS)
          one = fault_t()
-         news%earlier => self%list(:k - 1)
-         call hear(self%list(k)%observer, event, model, run, news, one)
+         self%list(k)%observer%earlier => self%list(:k - 1)
+         call hear(self%list(k)%observer, event, model, run, one)
          if (fault%code == 0) fault = one
          if (event == BEGINS .and. fault%code == 0) self%begun = k
       end do
       if (any(event == TIMED)) call add_elapsed(run%seconds_output, t0)
    end subroutine tell
 
-   subroutine hear(observer, event, model, run, news, fault)
+   subroutine hear(observer, event, model, run, fault)
       class(observer_t), intent(inout) :: observer
       integer, intent(in) :: event
       type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
-      type(news_t), intent(inout) :: news
       type(fault_t), intent(inout) :: fault
 
       select case (event)
       case (FITS)
-         call observer%fits(model, run, news, fault)
+         call observer%fits(model, run, fault)
       case (BEGINS)
-         call observer%begins(model, run, news, fault)
+         call observer%begins(model, run, fault)
       case (STAGE_BEGINS)
-         call observer%stage_begins(model, run, news, fault)
+         call observer%stage_begins(model, run, fault)
       case (STEP)
-         call observer%step(model, run, news, fault)
+         call observer%step(model, run, fault)
       case (TAKEN_OVER)
-         call observer%taken_over(model, run, news, fault)
+         call observer%taken_over(model, run, fault)
       case (REPEATED)
-         call observer%repeated(model, run, news, fault)
+         call observer%repeated(model, run, fault)
       case (STAGE_ENDS)
-         call observer%stage_ends(model, run, news, fault)
+         call observer%stage_ends(model, run, fault)
       case (ENDS)
-         call observer%ends(model, run, news, fault)
+         call observer%ends(model, run, fault)
       end select
    end subroutine hear
 end module run_observer

@@ -30,7 +30,7 @@ contains
       run%system%sparse%ordering = model%solver%ordering
       call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
       call make_assembly(model%domain, model%dofs, run%pattern, run%assembly)
-      run%constraint = new_constraint(model, model%dofs)
+      run%constraint = new_constraint(model)
       call initial_state(model, run%state, fault, run%tension)
       if (fault%code == 0) call prepare_contacts(model, run%system%contacts, fault)
       if (fault%code == 0) call place_heavy_plates(model, run%state)

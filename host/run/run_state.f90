@@ -14,7 +14,15 @@ module run_state
    use surface_forces, only: surface_forces_t
    implicit none (type, external)
    private
-   public :: run_t, exchange_run, act_contacts
+   public :: run_t, news_t, exchange_run, act_contacts
+
+   !> News for observers, beside what the run computes with.
+   type :: news_t
+      logical :: last = .false.            !< The stage ends with the step that was accepted.
+      logical :: complete = .false.        !< A stage that ends has come to its end; else a fault has ended the run.
+      real(wp) :: localised = 0.0_wp       !< Share of the shear work without ellipticity [-], set by its observer.
+      real(wp) :: contact_work = 0.0_wp    !< Work done on contacts so far [kJ], set by the ledger, which stands first.
+   end type news_t
 
    type, extends(solution_t) :: run_t
       type(term_box_t), allocatable :: terms(:)   !< Terms of the model, with what they keep from step to step.
@@ -24,6 +32,7 @@ module run_state
       integer(int64) :: rate_evaluations = 0   !< Rate evaluations of the material.
       real(wp) :: dissipated = 0.0_wp          !< Energy that terms dissipated in the last accepted step [kJ].
       real(wp) :: seconds_output = 0.0_wp      !< Wall time of the observers.
+      type(news_t) :: news
    end type run_t
 contains
    !> Sets which contacts act in a stage.

@@ -6,8 +6,7 @@ module step_attempt
    use faults, only: fault_t
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at
-   use convergence, only: control_t, log_t
-   use generalised_alpha, only: scheme_t, make_scheme, has_rates, has_inertia
+   use generalised_alpha, only: make_scheme, has_rates, has_inertia
    use model_types, only: model_t, gravity_at
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
@@ -69,16 +68,13 @@ contains
    !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
    !> docs/theory/host.md section 4.4. Faults: those of set_step; that of explain_failure where no cut is
    !> left, the linear solver failed, or the matrix is singular by no soft point.
-   subroutine try_step(model, stage, control, dt, run, log, accepted, fault)
+   subroutine try_step(model, stage, dt, run, accepted, fault)
       type(model_t), intent(inout) :: model   !< The tolerance of its laws follows Newton's method.
       type(stage_t), intent(in) :: stage
-      type(control_t), intent(in) :: control
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
-      type(log_t), intent(out) :: log
       logical, intent(out) :: accepted   !< False also where its error is too large.
       type(fault_t), intent(inout) :: fault
-      type(scheme_t) :: scheme
       real(wp), allocatable :: a0(:, :)
       real(wp) :: share
       logical :: lost
@@ -93,49 +89,48 @@ contains
       call set_step(model, stage, dt, run, fault)
       if (fault%code /= 0) return
       call prepare_rates(stage, dt, run)
-      scheme = scheme_of(stage, run, dt)
-      if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, model%dofs, scheme, run%state, &
-                                                                  run%constraint)
-      call take_step(model%domain, model%dofs, scheme, control, run%solution_t, log)
-      if (log%refused_guess .and. run%at%step == 0) then
+      run%scheme = scheme_of(stage, run, dt)
+      if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, run%scheme, run%state, run%constraint)
+      call take_step(model%domain, model%dofs, run%solution_t)
+      if (run%log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
          a0 = run%state%a
          run%state%a = 0.0_wp
-         call take_step(model%domain, model%dofs, scheme, control, run%solution_t, log)
-         if (log%outcome /= CONVERGED) run%state%a = a0
+         call take_step(model%domain, model%dofs, run%solution_t)
+         if (run%log%outcome /= CONVERGED) run%state%a = a0
       end if
-      run%iterations = run%iterations + log%iterations
-      run%rate_evaluations = run%rate_evaluations + log%rate_evaluations
-      accepted = log%outcome == CONVERGED
+      run%iterations = run%iterations + run%log%iterations
+      run%rate_evaluations = run%rate_evaluations + run%log%rate_evaluations
+      accepted = run%log%outcome == CONVERGED
       if (accepted) then
-         call judge_step(model, stage, dt, log%balanced, run, accepted)
+         call judge_step(model, stage, run, accepted)
          if (.not. accepted) run%assembly%slopes%known = .false.
          do i = 1, size(run%terms)
             call run%terms(i)%term%complete(model, run%solution_t)
          end do
          return
       end if
-      associate (at => run%at)
+      associate (at => run%at, outcome => run%log%outcome)
          run%cuts = run%cuts + 1
          at%cuts = at%cuts + 1
          at%good = 0
          run%system%factored = .false.
          ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing, or a
          ! contact that an iterate has opened.
-         lost = log%outcome == BODY_FREE .and. run%assembly%replaced == 0
+         lost = outcome == BODY_FREE .and. run%assembly%replaced == 0
          if (at%step > 0) lost = lost .and. .not. any([(acts_in(model%contacts(i)%stages, stage%name), &
                                                         i=1, size(model%contacts))])
-         share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, log%outcome == MATERIAL_FAILED)
-         if (at%cuts > stage%cuts .or. log%outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
+         share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, outcome == MATERIAL_FAILED)
+         if (at%cuts > stage%cuts .or. outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
              lost) then
-            call explain_failure(model, stage, run, log, run%state%time + dt, dt, fault)
+            call explain_failure(model, stage, run, dt, fault)
             return
          end if
          if (.not. has_rates(stage%kind) .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) &
             call spread_sudden_loads(model, run)
          ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
          at%factor = at%factor*share
-         call shorten_step(stage, dt, run)
+         call shorten_step(stage, run)
       end associate
    end subroutine try_step
 
@@ -170,8 +165,8 @@ contains
       integer :: i
 
       associate (c => run%constraint, until => run%state%time + dt)
-         c%load_0 = load_at(model, stage, model%dofs, run%state%time)
-         c%load_1 = load_at(model, stage, model%dofs, until)
+         c%load_0 = load_at(model, stage, run%state%time)
+         c%load_1 = load_at(model, stage, until)
          do i = 1, size(run%terms)
             if (fault%code == 0) call run%terms(i)%term%before_step(model, dt, run%solution_t, fault)
          end do
@@ -181,7 +176,7 @@ contains
             c%load_1 = c%load_1 - (1 - run%at%share_of(stage%duration, until))*run%at%sudden
          end if
       end associate
-      call constrain_step(model, stage, model%dofs, run%state%time + dt, run%at%x_start, run%constraint)
+      call constrain_step(model, stage, run%state%time + dt, run%at%x_start, run%constraint)
       do i = 1, size(run%terms)
          call run%terms(i)%term%prescribe(model, run%state%time + dt, run%solution_t)
       end do
@@ -193,14 +188,10 @@ contains
       type(stage_t), intent(in) :: stage
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      type(log_t) :: log
 
-      if (any(model%fixes%acceleration)) then
-         if (.not. allocated(run%constraint%acceleration)) allocate (run%constraint%acceleration(model%dofs%n))
-         call starting_accelerations(model, stage, model%dofs, make_scheme(stage%kind, stage%rho_inf, stage%dt), &
-                                     run%state%time, run%constraint%acceleration)
-      end if
-      call start_accelerations(model%domain, model%dofs, run%solution_t, log)
-      if (log%outcome /= CONVERGED) call explain_failure(model, stage, run, log, run%state%time, 0.0_wp, fault)
+      if (any(model%fixes%acceleration)) call starting_accelerations(model, stage, make_scheme(stage%kind, &
+         stage%rho_inf, stage%dt), run%state%time, run%constraint)
+      call start_accelerations(model%domain, model%dofs, run%solution_t)
+      if (run%log%outcome /= CONVERGED) call explain_failure(model, stage, run, 0.0_wp, fault)
    end subroutine first_accelerations
 end module step_attempt

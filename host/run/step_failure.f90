@@ -20,20 +20,21 @@ module step_failure
    real(wp), parameter :: LEAST_OF_STAGE = 1.0e-12_wp   !< Share of the stage: shorter steps are a crawl.
 contains
    !> Raises the fault of a step that failed: exit code, place, cause and remedy. Fault EXIT_MATERIAL, EXIT_CONVERGENCE
-   !> (also of contacts and of equations that are not finite), EXIT_FREE_BODY or EXIT_SOLVER, by log%outcome.
-   subroutine explain_failure(model, stage, run, log, time, dt, fault)
+   !> (also of contacts and of equations that are not finite), EXIT_FREE_BODY or EXIT_SOLVER, by the outcome of its log.
+   subroutine explain_failure(model, stage, run, dt, fault)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
       type(run_t), intent(in) :: run
-      type(log_t), intent(in) :: log
-      real(wp), intent(in) :: time, dt   !< At the end of the step, and its length [s].
+      real(wp), intent(in) :: dt   !< Length of the step [s].
       type(fault_t), intent(inout) :: fault
       character(600) :: text
       character(:), allocatable :: place, alone
+      real(wp) :: time
       integer :: e, i, node
 
+      time = run%state%time + dt
       place = 'Stage '//trim(stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
-      associate (m => model%domain)
+      associate (m => model%domain, log => run%log)
          select case (log%outcome)
          case (MATERIAL_FAILED)
             e = run%assembly%bad_element

@@ -169,9 +169,9 @@ contains
       integer :: i, k
 
       associate (x => run%state%x, c => run%constraint, number => run%at%stage)
-         load = load_at(model, model%stages(number), model%dofs, run%state%time)
+         load = load_at(model, model%stages(number), run%state%time)
          before = 0.0_wp
-         if (number > 1) before = load_at(model, model%stages(number - 1), model%dofs, run%state%time)
+         if (number > 1) before = load_at(model, model%stages(number - 1), run%state%time)
          at_once = norm2(load - before) > SAME*norm2(load)
          if (number == 1) at_once = at_once .or. abs(run%state%gravity) > 0.0_wp .or. &
             any(abs(x(AT_P_W:AT_P_C, :) - spread(x(AT_P_W:AT_P_C, 1), 2, size(x, 2))) > SAME*maxval(abs(x(AT_P_W:, :))))

@@ -198,11 +198,9 @@ contains
 
    !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
    !> docs/theory/host.md section 4.5. Where steps are given every one stands.
-   subroutine judge_step(model, stage, dt, foreseen, run, accepted)
+   subroutine judge_step(model, stage, run, accepted)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt   !< [s]
-      logical, intent(in) :: foreseen   !< The balances were met within rounding before any correction.
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
       real(wp) :: error(FIELDS, size(run%state%x, 2)), touching(size(run%control%touching))
@@ -215,13 +213,13 @@ contains
             touching = c%touching
             if (has_inertia(stage%kind)) touching = closed_contacts(run, run%next%x)
             closes = any(touching > c%touching)
-            if (closes) accepted = ends_at_closing(stage, dt, run)
+            if (closes) accepted = ends_at_closing(stage, run)
             if (.not. accepted) return
-            call estimate_error(model, stage, dt, run, error, known)
+            call estimate_error(model, stage, run, error, known)
             ! What is met before any correction is at rest, or goes on as foreseen: the rest is rounding.
-            if (foreseen) error = 0.0_wp
-            call weigh_error(model, stage, dt, error, known, run, accepted)
-            if (closes .and. .not. accepted) call end_where_it_closes(dt, run)
+            if (run%log%balanced) error = 0.0_wp
+            call weigh_error(model, stage, error, known, run, accepted)
+            if (closes .and. .not. accepted) call end_where_it_closes(run)
             if (.not. accepted) return
             c%touching = touching
             c%located = .false.
@@ -231,10 +229,9 @@ contains
    end subroutine judge_step
 
    !> Errors of all unknowns in the step under way, and of which fields they are known.
-   subroutine estimate_error(model, stage, dt, run, error, known)
+   subroutine estimate_error(model, stage, run, error, known)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(in) :: run
       real(wp), intent(out) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]; 0 where not known.
       logical, intent(out) :: known(FIELDS)
@@ -246,9 +243,9 @@ contains
             known = .true.
             return
          end if
-         call local_errors(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%state%v, &
+         call local_errors(make_scheme(stage%kind, stage%rho_inf, run%scheme%dt), c%memory, run%state%x, run%state%v, &
                            run%state%a, run%next%x, run%next%v, run%next%a, error, known)
-         if (is_flow(stage%kind) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(dt, run)
+         if (is_flow(stage%kind) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(run)
          ! Saturated soil holds no air and has no suction: its number follows no balance that holds it, and rings.
          where (run%state%x(AT_P_C, :) < 0.0_wp .and. run%next%x(AT_P_C, :) < 0.0_wp) error(AT_P_C, :) = 0.0_wp
       end associate
@@ -258,16 +255,15 @@ contains
    !> of time. Of such a flow the steps change by D and (sqrt(2) - 1) D, so that the rate falls in the second by sqrt(2)
    !> times what it adds. What goes on as in the first step, as under a load that begins to grow, is none.
    !> docs/theory/host.md section 4.5.
-   pure function begun_with_root(dt, run) result(change)
-      real(wp), intent(in) :: dt   !< Length of the second step [s].
-      type(run_t), intent(in) :: run
+   pure function begun_with_root(run) result(change)
+      type(run_t), intent(in) :: run   !< In the second step.
       real(wp) :: change(FIELDS, size(run%state%x, 2))   !< [m, kPa]
       real(wp) :: norms(FIELDS), turns(FIELDS)
       integer :: f
 
       change = run%next%x - run%state%x
       norms = field_norms(change)
-      turns = field_norms(dt*(run%next%v - run%state%v))/sqrt(2.0_wp)
+      turns = field_norms(run%scheme%dt*(run%next%v - run%state%v))/sqrt(2.0_wp)
       do f = 1, FIELDS
          if (turns(f) < norms(f)) change(f, :) = change(f, :)*turns(f)/norms(f)
       end do
@@ -275,10 +271,9 @@ contains
 
    !> Whether the error of a controlled step lets it stand, the length of the next attempt, and what limits it: the
    !> largest error of a field over its largest change, against the local tolerance.
-   subroutine weigh_error(model, stage, dt, error, known, run, accepted)
+   subroutine weigh_error(model, stage, error, known, run, accepted)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt             !< [s]
       real(wp), intent(in) :: error(:, :)    !< (FIELDS, nodes) [m, kPa]
       logical, intent(in) :: known(FIELDS)
       type(run_t), intent(inout) :: run
@@ -286,7 +281,7 @@ contains
       real(wp) :: shares(FIELDS), ratio, asked
       integer :: bodies, by
 
-      associate (c => run%control)
+      associate (c => run%control, dt => run%scheme%dt)
          bodies = size(run%state%x, 2) - size(model%domain%bodies)
          shares = field_norms(error(:, :bodies))/scales(run, bodies)
          shares(:DISPLACEMENTS) = max(shares(:DISPLACEMENTS), share_of_plates(error, bodies, run))
@@ -370,13 +365,12 @@ contains
 
    !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
    !> 4.4; nothing where steps are given.
-   subroutine shorten_step(stage, dt, run)
+   subroutine shorten_step(stage, run)
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
 
       if (.not. stage%controlled) return
-      run%control%controller%dt = dt*run%at%factor
+      run%control%controller%dt = run%scheme%dt*run%at%factor
       run%control%controller%held = .true.
       if (run%control%memory%based) then
          run%state%v = run%control%memory%base_rate
@@ -390,16 +384,15 @@ contains
 
    !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
    !> docs/theory/host.md section 4.5. Where steps are given their length does not follow.
-   subroutine keep_step(model, stage, dt, run)
+   subroutine keep_step(model, stage, run)
       type(model_t), intent(in) :: model
       type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       logical :: breaks
 
       if (.not. stage%controlled) return
-      breaks = .not. has_inertia(stage%kind) .and. is_break(model, stage, run%next%time, dt)
-      associate (c => run%control)
+      breaks = .not. has_inertia(stage%kind) .and. is_break(model, stage, run%next%time, run%scheme%dt)
+      associate (c => run%control, dt => run%scheme%dt)
          call remember(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%next%x, run%state%v, &
                        run%state%s_rate, run%state%outflow)
          c%fresh = c%fresh + 1

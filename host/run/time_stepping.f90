@@ -3,16 +3,17 @@
 module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
-   use convergence, only: control_t, log_t
+   use convergence, only: control_t
    use model_types, only: model_t
    use porous_domain, only: copy_state, take_over
-   use run_observer, only: observers_t, news_t, FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, &
+   use run_observer, only: observers_t, FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, &
                            ENDS
    use run_state, only: run_t, act_contacts
+   use scene_parts, only: stage_t
    use sparse_factors, only: release
    use stress_tolerance, only: follow_newton, roughness
    use step_attempt, only: begin_stage, resume_stage, try_step
-   use step_size, only: negligible_changes, next_step, scheme_of, keep_step, is_over
+   use step_size, only: negligible_changes, next_step, keep_step, is_over
    use step_landings, only: LAST_STEP
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -28,18 +29,17 @@ contains
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(news_t) :: news
       integer :: i
 
-      if (run%steps > 0) call observers%tell(FITS, model, run, news, fault)
-      call observers%tell(BEGINS, model, run, news, fault)
+      if (run%steps > 0) call observers%tell(FITS, model, run, fault)
+      call observers%tell(BEGINS, model, run, fault)
       do i = max(1, run%at%stage), size(model%stages)
          if (fault%code /= 0) exit
          call run_stage(model, i, run, observers, fault)
-         news = news_t(stage=i, complete=fault%code == 0)
-         call observers%tell(STAGE_ENDS, model, run, news, fault)
+         run%news%complete = fault%code == 0
+         call observers%tell(STAGE_ENDS, model, run, fault)
       end do
-      call observers%tell(ENDS, model, run, news, fault)
+      call observers%tell(ENDS, model, run, fault)
       call release(run%system%sparse)
       run%system%analysed = .false.
    end subroutine run_stages
@@ -51,36 +51,32 @@ contains
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(control_t) :: control
-      type(log_t) :: log
-      type(news_t) :: news
       real(wp) :: dt
       logical :: accepted
 
       associate (stage => model%stages(number))
-         control = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
+         run%newton = control_t(stage%tolerance, stage%max_iterations, stage%no_predictor, stage%measure)
          call act_contacts(model, stage, run%system%contacts)
          ! A run that is taken up again is in the middle of its stage.
          if (run%at%stage == number) then
             call resume_stage(model, run, fault)
          else
-            news%stage = number
-            call observers%tell(STAGE_BEGINS, model, run, news, fault)
+            run%at%stage = number
+            call observers%tell(STAGE_BEGINS, model, run, fault)
             call begin_stage(model, number, run, fault)
          end if
          do while (fault%code == 0)
             if (is_over(stage, run)) exit
-            call follow_newton(control%tolerance, model%domain%regions)
-            control%roughness = roughness(model%domain%regions)
-            control%negligible = negligible_changes(stage, run)
+            call follow_newton(run%newton%tolerance, model%domain%regions)
+            run%newton%roughness = roughness(model%domain%regions)
+            run%newton%negligible = negligible_changes(stage, run)
             dt = next_step(model, stage, run)
-            call try_step(model, stage, control, dt, run, log, accepted, fault)
+            call try_step(model, stage, dt, run, accepted, fault)
             if (fault%code /= 0) return
             if (accepted) then
-               call close_step(model, number, dt, control, log, run, observers, fault)
+               call close_step(model, stage, run, observers, fault)
             else
-               news%scheme%dt = dt
-               call observers%tell(REPEATED, model, run, news, fault)
+               call observers%tell(REPEATED, model, run, fault)
             end if
          end do
          if (fault%code /= 0) return
@@ -90,31 +86,25 @@ contains
    end subroutine run_stage
 
    !> Shows an accepted step, takes it over, and lets a step that was cut grow back.
-   subroutine close_step(model, number, dt, control, log, run, observers, fault)
+   subroutine close_step(model, stage, run, observers, fault)
       type(model_t), intent(in) :: model
-      integer, intent(in) :: number
-      real(wp), intent(in) :: dt
-      type(control_t), intent(in) :: control
-      type(log_t), intent(in) :: log
+      type(stage_t), intent(in) :: stage
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(news_t) :: news
       type(fault_t) :: verdict
       integer :: i
 
-      associate (stage => model%stages(number), at => run%at)
-         ! How it was taken, before it counts.
-         news = news_t(number, scheme_of(stage, run, dt), control, log, run%control%error, &
-                           at%t_start + stage%duration - run%next%time <= LAST_STEP*dt)
+      associate (at => run%at)
+         run%news%last = at%t_start + stage%duration - run%next%time <= LAST_STEP*run%scheme%dt
          at%step = at%step + 1
          run%steps = run%steps + 1
-         call observers%tell(STEP, model, run, news, verdict)
+         call observers%tell(STEP, model, run, verdict)
          run%dissipated = 0.0_wp
          do i = 1, size(run%terms)
             call run%terms(i)%term%accept(run%solution_t, run%dissipated)
          end do
-         call keep_step(model, stage, dt, run)
+         call keep_step(model, stage, run)
          call take_over(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
          at%good = at%good + 1
@@ -124,7 +114,7 @@ contains
             at%good = 0
          end if
       end associate
-      call observers%tell(TAKEN_OVER, model, run, news, fault)
+      call observers%tell(TAKEN_OVER, model, run, fault)
       if (fault%code == 0) fault = verdict
    end subroutine close_step
 

@@ -3,246 +3,243 @@
 !> that a user could have written. docs/theory/host.md section 11.
 module effect_switches
    use kinds, only: wp
-   use effect_names, only: EFFECTS, OF_INERTIA, OF_SEEPAGE, OF_P_W, OF_P_C, OF_GRAVITY, OF_CONTACT, OF_DAMPING, &
-      OF_LIMITS, OF_VOID_RATIO, OF_HYSTERESIS, OF_ELASTIC_DOMAIN, term_switch_t, TERM_SWITCHES
    use faults, only: fault_t, raise, EXIT_INPUT
-   use key_schema, only: get_text, given
+   use key_schema, only: get_text, get_number, given, texts_of
    use library_tables, only: property_index
-   use namelists, only: set_entry
+   use namelists, only: group_t, set_entry
    use parameter_groups, only: read_parameters
-   use scene_parts, only: NAME_LENGTH, PRESCRIBED_P_A, LOAD_WATER, LOAD_RAIN, LOAD_AIR
-   use scene_types, only: scene_t, WITH_U, WITH_P_W, WITH_P_C
+   use scene_types, only: scene_t, groups_named
    use texts, only: lower_case, read_number, LENGTH
-   use generalised_alpha, only: QUASI_STATIC, has_inertia
-   use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: remove_effects
+   public :: remove_effects, EFFECT_WORDS
 
+   !> Words of the key.
+   character(*), parameter :: EFFECT_WORDS = 'inertia|relative_acceleration|p_w|p_c|gravity|contact|damping|'// &
+      'absorbing|contact_drainage|seepage_face|friction|strength|void_ratio_in_retention|hysteresis|bonding|fabric|'// &
+      'isotropic|lode|memory_rule|elastic_domain'
+
+   !> A key that says an effect.
+   type :: switch_t
+      character(21) :: effect
+      character(9) :: group
+      character(17) :: key         !< Empty: a group of the name says it.
+      character(14) :: with        !< Words that say it; empty: any value but `without`.
+      character(12) :: without     !< Value of the key without the effect; empty: the group is left out.
+      logical :: makes = .true.    !< Else it goes with the effect, and does not make one.
+   end type switch_t
+
+   type(switch_t), parameter :: SWITCHES(*) = [ &
+      switch_t('inertia', 'stage', 'analysis', 'dynamic', 'quasi_static'), &
+      switch_t('inertia', 'scene', 'seepage_inertia', 'yes', 'no', makes=.false.), &
+      switch_t('relative_acceleration', 'scene', 'seepage_inertia', 'yes', 'no'), &
+      switch_t('p_w', 'scene', 'fields', '', 'u'), &
+      switch_t('p_w', 'scene', 'seepage_inertia', 'yes', 'no', makes=.false.), &
+      switch_t('p_w', 'fix', 'field', 'p_w|p_c|p_a', '', makes=.false.), &
+      switch_t('p_w', 'load', 'kind', 'water|rain|air', '', makes=.false.), &
+      switch_t('p_w', 'tie', 'pressures', 'yes', 'no', makes=.false.), &
+      switch_t('p_w', 'contact', 'drainage', 'state', 'fixed', makes=.false.), &
+      switch_t('p_c', 'scene', 'fields', 'u-p_w-p_c', 'u-p_w'), &
+      switch_t('p_c', 'fix', 'field', 'p_c|p_a', '', makes=.false.), &
+      switch_t('p_c', 'load', 'kind', 'air', '', makes=.false.), &
+      switch_t('gravity', 'scene', 'gravity', '', '0'), &
+      switch_t('contact', 'contact', '', '', ''), &
+      switch_t('damping', 'region', 'damping', '', '0'), &
+      switch_t('damping', 'region', 'stiffness_damping', '', '0'), &
+      switch_t('damping', 'region', 'viscosity', '', '0'), &
+      switch_t('absorbing', 'absorbing', '', '', ''), &
+      switch_t('contact_drainage', 'contact', 'drainage', 'state', 'fixed'), &
+      switch_t('seepage_face', 'fix', 'kind', 'seepage', 'value'), &   ! The limit is prescribed,
+      switch_t('seepage_face', 'load', 'kind', 'rain', 'water'), &     ! and all rain flows in.
+      switch_t('friction', 'contact', 'friction', '', '0'), &
+      switch_t('friction', 'contact', 'cohesion', '', '0'), &
+      switch_t('strength', 'strength', '', '', '')]
+
+   character(*), parameter :: SOIL = 'mud'   !< Group whose parameters are switches of effects, too.
    real(wp), parameter :: ROUNDING = 1.0e-12_wp
-   !> Switches of the material, in the order of their effects: 0 is off (of memory_rule: classic).
-   character(11), parameter :: SWITCHES(OF_HYSTERESIS:OF_ELASTIC_DOMAIN) = [character(11) :: 'hysteresis', 'bonding', &
-      'fabric', 'isotropic', 'lode', 'memory_rule', 'rho_e']
 contains
-   logical function is_present(scene, effect) result(present)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: effect   !< One of OF_...
-      integer :: i
-
-      present = any([(is_said(scene, TERM_SWITCHES(i)), i=1, size(TERM_SWITCHES))] .and. TERM_SWITCHES%effect == effect)
-      select case (effect)
-      case (OF_INERTIA)
-         present = any(has_inertia(scene%stages%kind))
-      case (OF_SEEPAGE)
-         present = scene%seepage_inertia
-      case (OF_P_W)
-         present = scene%fields /= WITH_U
-      case (OF_P_C)
-         present = scene%fields == WITH_P_C
-      case (OF_GRAVITY)
-         present = scene%gravity > 0.0_wp
-      case (OF_CONTACT)
-         present = size(scene%contacts) > 0
-      case (OF_DAMPING)
-         present = present .or. any(scene%regions%damping > 0.0_wp .or. scene%regions%stiffness_damping > 0.0_wp)
-      case (OF_LIMITS)
-         present = scene%fields /= WITH_U .and. (any(scene%fixes%limits) .or. any(scene%loads%kind == LOAD_RAIN))
-      case (OF_VOID_RATIO)
-         if (scene%fields == WITH_P_C) &
-            present = any([(parameter_of(scene, i, 'Omega') > 0.0_wp, i=1, size(scene%materials))])
-      case (OF_HYSTERESIS:OF_ELASTIC_DOMAIN)
-         present = any([(parameter_of(scene, i, trim(SWITCHES(effect))) > 0.0_wp, i=1, size(scene%materials))])
-      end select
-   end function is_present
-
-   !> Takes the effects of the key `without` out. Those that the scene does not have become its list `absent`. Fault
-   !> EXIT_INPUT: one of them cannot be.
+   !> Makes the groups of a scene of those that were read, without the effects of its key `without`. Those that the
+   !> scene does not have become its list `absent`. Fault EXIT_INPUT: one of them cannot be taken out.
    subroutine remove_effects(scene, fault)
       type(scene_t), intent(inout) :: scene
       type(fault_t), intent(inout) :: fault
-      logical :: here(size(scene%without))
-      character(200) :: why
+      character(LENGTH), allocatable :: without(:)
+      character(:), allocatable :: why
       integer :: i
 
-      here = [(is_present(scene, findloc(EFFECTS, scene%without(i), dim=1)), i=1, size(here))]
-      scene%absent = pack(scene%without, .not. here)
-      do i = 1, size(here)
-         call remove(scene, findloc(EFFECTS, scene%without(i), dim=1), why)
-         if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%file)//': without = '//trim(scene%without(i))// &
-                                   ': '//trim(why)//'.')
+      scene%groups = scene%as_read
+      i = findloc([(scene%groups(i)%name == 'scene', i=1, size(scene%groups))], .true., dim=1)
+      without = lower_case(texts_of(scene%groups(i), 'without'))
+      scene%absent = pack(without, [(.not. is_present(scene%groups, trim(without(i))), i=1, size(without))])
+      do i = 1, size(without)
+         call remove(scene, trim(without(i)), why)
+         if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%file)//': without = '//trim(without(i))//': '// &
+                                   why//'.')
       end do
    end subroutine remove_effects
 
-   !> Takes an effect out of a scene.
-   subroutine remove(scene, effect, why)
-      type(scene_t), intent(inout) :: scene
-      integer, intent(in) :: effect        !< One of OF_...
-      character(*), intent(out) :: why     !< Why it cannot be; empty if it could.
-      integer :: i
+   logical function is_present(groups, effect) result(present)
+      type(group_t), intent(in) :: groups(:)
+      character(*), intent(in) :: effect
+      integer :: i, k
 
-      why = ''
-      do i = 1, size(TERM_SWITCHES)
-         if (TERM_SWITCHES(i)%effect == effect .or. (TERM_SWITCHES(i)%wet .and. effect == OF_P_W)) &
-            call unsay(scene, TERM_SWITCHES(i))
+      present = .false.
+      do i = 1, size(groups)
+         do k = 1, size(SWITCHES)
+            present = present .or. (SWITCHES(k)%effect == effect .and. SWITCHES(k)%makes .and. &
+                                    says(groups(i), SWITCHES(k)))
+         end do
+         if (parameter_of(groups(i), switch_of_soil(effect)) > 0.0_wp) present = .true.
       end do
-      select case (effect)
-      case (OF_INERTIA)
-         where (has_inertia(scene%stages%kind)) scene%stages%kind = QUASI_STATIC
-         scene%seepage_inertia = .false.
-      case (OF_SEEPAGE)
-         scene%seepage_inertia = .false.
-      case (OF_P_W)
-         call drop_field(scene, AT_P_W, LOAD_WATER)
-         scene%fields = WITH_U
-         scene%seepage_inertia = .false.
-         if (size(scene%ties) > 0) scene%ties%pressures = .false.
-      case (OF_P_C)
-         why = water_given_by_others(scene)
-         if (why /= '') return
-         call drop_field(scene, AT_P_C, LOAD_AIR)
-         scene%fields = min(scene%fields, WITH_P_W)
-      case (OF_GRAVITY)
-         if (any(scene%initials%geostatic) .or. any(scene%plates%heavy)) &
-            why = 'the scene asks for weight: geostatic stress or a heavy plate'
-         if (why == '') scene%gravity = 0.0_wp
-      case (OF_CONTACT)
-         scene%contacts = scene%contacts(:0)
-      case (OF_DAMPING)
-         scene%regions%damping = 0.0_wp
-         scene%regions%stiffness_damping = 0.0_wp
-      case (OF_LIMITS)
-         ! The limit is prescribed, and all rain flows in.
-         scene%fixes%limits = .false.
-         where (scene%loads%kind == LOAD_RAIN) scene%loads%kind = LOAD_WATER
-      case (OF_VOID_RATIO)
-         call freeze_retention(scene, why)
-      case (OF_HYSTERESIS:OF_ELASTIC_DOMAIN)
-         call switch_off(scene, trim(SWITCHES(effect)))
-      end select
-   end subroutine remove
+   end function is_present
 
-   !> Where p_a and p_c are prescribed, p_w is as well: without these two its boundary would be closed. Empty: nowhere.
-   pure function water_given_by_others(scene) result(why)
-      type(scene_t), intent(in) :: scene
-      character(200) :: why
-      integer :: i
-
-      why = ''
-      do i = 1, size(scene%fixes)
-         associate (here => scene%fixes%group_name == scene%fixes(i)%group_name, field => scene%fixes%field)
-            if (field(i) /= PRESCRIBED_P_A .or. .not. any(here .and. field == AT_P_C) .or. &
-                any(here .and. field == AT_P_W)) cycle
-            why = 'p_a and p_c of '''//trim(scene%fixes(i)%group_name)//''' prescribe p_w: give p_w and one of these'
-         end associate
-      end do
-   end function water_given_by_others
-
-   !> Without the fixed values and the inflows of a field, and of those that need it.
-   pure subroutine drop_field(scene, first_field, first_load)
-      type(scene_t), intent(inout) :: scene
-      integer, intent(in) :: first_field, first_load
-
-      scene%fixes = pack(scene%fixes, scene%fixes%field < first_field)
-      scene%loads = pack(scene%loads, scene%loads%kind < first_load .or. scene%loads%kind > LOAD_AIR)
-   end subroutine drop_field
-
-   !> Whether the scene asks for a term by a group or key: a key says something else than that there is none.
-   logical function is_said(scene, switch)
-      type(scene_t), intent(in) :: scene
-      type(term_switch_t), intent(in) :: switch
+   !> Whether a group says an effect by a key.
+   pure logical function says(group, switch)
+      type(group_t), intent(in) :: group
+      type(switch_t), intent(in) :: switch
       character(LENGTH) :: value
       real(wp) :: number
       logical :: good
-      integer :: i
 
-      is_said = .false.
-      do i = 1, size(scene%groups)
-         if (scene%groups(i)%name /= switch%group) cycle
-         value = switch%none
-         call get_text(scene%groups(i), switch%key, value)
-         call read_number(value, number, good)
-         is_said = is_said .or. switch%key == '' .or. &
-                   merge(abs(number) > 0.0_wp, lower_case(value) /= switch%none, good)
-      end do
-   end function is_said
+      says = group%name == switch%group
+      if (.not. says .or. switch%key == '') return
+      says = given(group, trim(switch%key))
+      if (.not. says) return
+      call get_text(group, trim(switch%key), value)
+      value = lower_case(value)
+      call read_number(value, number, good)
+      says = merge(abs(number) > 0.0_wp, value /= switch%without, good)
+      if (switch%with /= '') says = index('|'//trim(switch%with)//'|', '|'//trim(value)//'|') > 0
+   end function says
 
-   !> Takes the groups of a term out, or lets their key say that there is none.
-   subroutine unsay(scene, switch)
+   !> Takes an effect out of the groups of a scene.
+   subroutine remove(scene, effect, why)
       type(scene_t), intent(inout) :: scene
-      type(term_switch_t), intent(in) :: switch
-      integer :: i
-
-      do i = 1, size(scene%groups)
-         if (scene%groups(i)%name /= switch%group) cycle
-         if (switch%key == '') scene%kept(i) = .false.
-         if (given(scene%groups(i), switch%key)) call set_entry(scene%groups(i), switch%key, trim(switch%none))
-      end do
-   end subroutine unsay
-
-   !> A switch of the material is 0.
-   subroutine switch_off(scene, name)
-      type(scene_t), intent(inout) :: scene
-      character(*), intent(in) :: name
-      integer :: i
-
-      do i = 1, size(scene%materials)
-         if (scene%materials(i)%group%name == 'mud') call set_number(scene, i, name, 0.0_wp)
-      end do
-   end subroutine switch_off
-
-   !> The retention curve that holds at the initial void ratio, whatever happens to it.
-   subroutine freeze_retention(scene, why)
-      type(scene_t), intent(inout) :: scene
-      character(*), intent(out) :: why
-      real(wp) :: e, e_other, omega, p_a
+      character(*), intent(in) :: effect
+      character(:), allocatable, intent(out) :: why   !< Why it cannot be; empty if it could.
+      logical :: kept(size(scene%groups))
       integer :: i, k
 
       why = ''
-      do i = 1, size(scene%materials)
-         omega = parameter_of(scene, i, 'Omega')
-         if (.not. omega > 0.0_wp) cycle
-         e = 0.0_wp
-         do k = 1, size(scene%regions)
-            if (scene%regions(k)%material_name(:NAME_LENGTH) /= scene%materials(i)%name) cycle
-            e_other = scene%regions(k)%void_ratio
-            if (e_other < 0.0_wp) e_other = parameter_of(scene, i, 'e_0')
-            if (e > 0.0_wp .and. abs(e - e_other) > ROUNDING) &
-               why = 'material '//trim(scene%materials(i)%name)//' has regions of several void ratios'
-            e = e_other
-         end do
-         if (why /= '') return
-         if (.not. e > 0.0_wp) cycle
-         p_a = parameter_of(scene, i, 'P_a')*e**(-omega)
-         call set_number(scene, i, 'Omega', 0.0_wp)
-         call set_number(scene, i, 'P_a', p_a)
+      select case (effect)
+      case ('gravity')
+         if (any([(asks_for_weight(scene%groups(i)), i=1, size(kept))])) &
+            why = 'the scene asks for weight: geostatic stress, a water table or a heavy plate'
+      case ('p_c')
+         why = water_given_by_others(groups_named(scene, 'fix'))
+      case ('void_ratio_in_retention')
+         why = freeze_retention(scene)
+      end select
+      if (why /= '') return
+      kept = .true.
+      do i = 1, size(kept)
+         associate (group => scene%groups(i))
+            do k = 1, size(SWITCHES)
+               if (SWITCHES(k)%effect /= effect .or. .not. says(group, SWITCHES(k))) cycle
+               kept(i) = kept(i) .and. SWITCHES(k)%without /= ''
+               if (kept(i)) call set_entry(group, trim(SWITCHES(k)%key), trim(SWITCHES(k)%without))
+            end do
+            if (group%name == SOIL .and. switch_of_soil(effect) /= '') &
+               call set_entry(group, switch_of_soil(effect), '0')
+         end associate
       end do
-   end subroutine freeze_retention
+      scene%groups = pack(scene%groups, kept)
+   end subroutine remove
 
-   subroutine set_number(scene, material, name, value)
+   pure logical function asks_for_weight(group) result(asks)
+      type(group_t), intent(in) :: group
+
+      asks = says(group, switch_t('', 'initial', 'stress', 'geostatic', '')) .or. &
+             says(group, switch_t('', 'plate', 'weight', 'yes', '')) .or. &
+             (group%name == 'initial' .and. given(group, 'water_table'))
+   end function asks_for_weight
+
+   !> Parameter of the soil that says an effect; empty: none does.
+   pure function switch_of_soil(effect) result(parameter)
+      character(*), intent(in) :: effect
+      character(:), allocatable :: parameter
+
+      parameter = ''
+      select case (effect)
+      case ('hysteresis', 'bonding', 'fabric', 'isotropic', 'lode', 'memory_rule')
+         parameter = effect
+      case ('elastic_domain')
+         parameter = 'rho_e'
+      case ('void_ratio_in_retention')
+         parameter = 'Omega'
+      end select
+   end function switch_of_soil
+
+   !> Where p_a and p_c are prescribed, p_w is as well: without these two its boundary would be closed. Empty: nowhere.
+   function water_given_by_others(fixes) result(why)
+      type(group_t), intent(in) :: fixes(:)
+      character(:), allocatable :: why
+      character(LENGTH) :: at(size(fixes)), field(size(fixes))
+      integer :: i
+
+      why = ''
+      do i = 1, size(fixes)
+         call get_text(fixes(i), 'group', at(i))
+         call get_text(fixes(i), 'field', field(i))
+      end do
+      field = lower_case(field)
+      do i = 1, size(fixes)
+         if (field(i) /= 'p_a' .or. .not. any(at == at(i) .and. field == 'p_c') .or. &
+             any(at == at(i) .and. field == 'p_w')) cycle
+         why = 'p_a and p_c of '''//trim(at(i))//''' prescribe p_w: give p_w and one of these'
+      end do
+   end function water_given_by_others
+
+   !> Gives every soil the retention curve that holds at the initial void ratio, whatever happens to it; why not, where
+   !> it has several.
+   function freeze_retention(scene) result(why)
       type(scene_t), intent(inout) :: scene
-      integer, intent(in) :: material
-      character(*), intent(in) :: name
-      real(wp), intent(in) :: value
+      character(:), allocatable :: why
+      type(group_t), allocatable :: regions(:)
+      character(LENGTH) :: name, material
       character(26) :: text
+      real(wp) :: e, e_other, omega
+      integer :: i, k
+      logical :: found
 
-      write (text, '(es24.16)') value
-      call set_entry(scene%materials(material)%group, name, trim(adjustl(text)))
-   end subroutine set_number
+      why = ''
+      allocate (regions, source=groups_named(scene, 'region'))
+      do i = 1, size(scene%groups)
+         associate (soil_group => scene%groups(i))
+            omega = parameter_of(soil_group, 'Omega')
+            if (.not. omega > 0.0_wp) cycle
+            call get_text(soil_group, 'name', name)
+            e = 0.0_wp
+            do k = 1, size(regions)
+               call get_text(regions(k), 'material', material)
+               if (material /= name) cycle
+               call get_number(regions(k), 'void_ratio', e_other, found)
+               if (.not. found) e_other = parameter_of(soil_group, 'e_0')
+               if (e > 0.0_wp .and. abs(e - e_other) > ROUNDING) &
+                  why = 'material '//trim(name)//' has regions of several void ratios'
+               e = e_other
+            end do
+            if (why /= '') return
+            if (.not. e > 0.0_wp) cycle
+            write (text, '(es24.16)') parameter_of(soil_group, 'P_a')*e**(-omega)
+            call set_entry(soil_group, 'P_a', trim(adjustl(text)))
+         end associate
+      end do
+   end function freeze_retention
 
-   !> Value of a parameter of MUD, from the group, its file or the library; 0 of other laws, and where the group is
+   !> Value of a parameter of MUD, from the group, its file or the library; 0 of other groups, and where the group is
    !> refused, which is told where the model is built.
-   real(wp) function parameter_of(scene, material, name) result(value)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: material
-      character(*), intent(in) :: name
+   real(wp) function parameter_of(group, name) result(value)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: name   !< Empty: none, 0.
       real(wp), allocatable :: props(:)
       character(256) :: title
       character(600) :: doubt
       type(fault_t) :: fault
 
       value = 0.0_wp
-      if (scene%materials(material)%group%name /= 'mud') return
-      call read_parameters(scene%materials(material)%group, props, title, doubt, fault)
+      if (group%name /= SOIL .or. name == '') return
+      call read_parameters(group, props, title, doubt, fault)
       if (fault%code == 0) value = props(property_index(name))
    end function parameter_of
 end module effect_switches

@@ -1,11 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> Parts of a scene that its model keeps as they are written: where a group stands, histories, stages, and the values of
-!> supports, loads, plates, contacts, points and the start. They name nothing that is defined elsewhere but stages and,
-!> for sentences, groups of the mesh. Defaults are those of the keys (scene_keys has range and meaning); a value outside
-!> of the range says that the key is not given.
+!> Parts of a model that are as the scene says them: where a group stands, histories and stages. Defaults are those of
+!> the keys; a value outside of the range of its key says that it is not given.
 module scene_parts
    use kinds, only: wp
-   use contact_types, only: contact_options_t
    use convergence, only: BY_STAGE
    use faults, only: at_line
    use history_shapes, only: arc_at
@@ -14,9 +11,7 @@ module scene_parts
    implicit none (type, external)
    private
    public :: scene_item_t, amplitude_t, stage_t
-   public :: initial_values_t, acting_values_t, fix_values_t, load_values_t, plate_values_t, contact_values_t, &
-             named_point_t
-   public :: NAME_LENGTH, FINGERPRINT_LENGTH, acts_in, place_of, amplitude_at
+   public :: NAME_LENGTH, FINGERPRINT_LENGTH, NEVER, acts_in, place_of, amplitude_at
    public :: PRESCRIBED_P_A, PRESCRIBED_OF_BODY
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
              LOAD_OF_BODY
@@ -24,7 +19,7 @@ module scene_parts
    integer, parameter :: NAME_LENGTH = 64         !< Longest name that a scene gives.
    integer, parameter :: FINGERPRINT_LENGTH = 16
 
-   ! Numbers of words, in the order in which scene_keys lists those of the key (a test holds the two together).
+   ! Numbers of words, in the order of those of the key (a test holds the two together).
    integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< &fix field, after those of unknown_fields: air pressure.
    integer, parameter :: PRESCRIBED_OF_BODY = FIELDS + 2  !< &fix field: coordinate of a plate alone; read as u_z.
    integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
@@ -33,7 +28,7 @@ module scene_parts
    integer, parameter :: LOAD_RAIN = 5        !< &load kind: inflow until the surface ponds [m/s].
    integer, parameter :: LOAD_FORCE_R = 7, LOAD_FORCE_Z = 8   !< &load kind: on every node of a group [kN].
    integer, parameter :: LOAD_OF_BODY = 9     !< &load kind: on a coordinate of a plate alone; LOAD_FORCE_Z.
-   real(wp), parameter :: NEVER = huge(1.0_wp)
+   real(wp), parameter :: NEVER = huge(1.0_wp)   !< A limit of times or values that is none.
 
    !> Where a group of the scene begins, for sentences about it.
    type :: scene_item_t
@@ -63,60 +58,6 @@ module scene_parts
       logical :: film = .true.                       !< No key says when fields are written.
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
    end type stage_t
-
-   ! Of what follows no stages are all.
-   type, extends(scene_item_t) :: initial_values_t
-      character(LENGTH) :: group_name = 'all'
-      real(wp) :: p_w = 0.0_wp, p_w_slope = 0.0_wp, p_c = 0.0_wp, p_c_slope = 0.0_wp, datum = 0.0_wp
-      logical :: with_table = .false.                !< Pressures are those of water at rest.
-      real(wp) :: water_table = 0.0_wp               !< [m]
-      real(wp) :: largest_suction = NEVER            !< Above a water table [kPa].
-      real(wp) :: saturation = 0.0_wp, v_z = 0.0_wp, wave = 0.0_wp, wave_number = 0.0_wp
-      logical :: uniform = .false., geostatic = .false.
-      logical :: follows = .false.      !< Columns end at the top of the ground above a point, not at `surface`.
-      real(wp) :: sigma(3) = 0.0_wp, surface = 0.0_wp, surcharge = 0.0_wp, k_0 = 0.5_wp
-      logical :: net = .true.           !< K_0 acts on the net stress where p_c > 0.
-   end type initial_values_t
-
-   !> A value that acts on a group, as it is or by a load.
-   type, extends(scene_item_t) :: acting_values_t
-      character(LENGTH) :: group_name = ''
-      real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
-      logical :: of_body = .false.                   !< It acts on a coordinate of a plate alone.
-      character(LENGTH), allocatable :: stages(:)
-   end type acting_values_t
-
-   type, extends(acting_values_t) :: fix_values_t
-      integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
-      real(wp) :: from = -NEVER, until = NEVER
-      logical :: hold = .false., acceleration = .false.
-      logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
-   end type fix_values_t
-
-   type, extends(acting_values_t) :: load_values_t
-      integer :: kind = 0                            !< LOAD_...
-   end type load_values_t
-
-   !> A rigid plate: one with a face of its own that presses through a contact, or one that is joined to a boundary of
-   !> the mesh.
-   type, extends(scene_item_t) :: plate_values_t
-      character(NAME_LENGTH) :: name = ''
-      real(wp), allocatable :: corners(:, :)         !< (2, corners) of its own face, body on the left [m].
-      real(wp) :: mass = 0.0_wp, force = 0.0_wp
-      logical :: heavy = .false.
-   end type plate_values_t
-
-   !> Two boundaries, or a boundary and a plate, that may come into contact.
-   type, extends(scene_item_t) :: contact_values_t
-      character(NAME_LENGTH) :: name = ''
-      type(contact_options_t) :: options
-      character(LENGTH), allocatable :: stages(:)
-   end type contact_values_t
-
-   type :: named_point_t
-      character(NAME_LENGTH) :: name = ''
-      real(wp) :: x(2) = 0.0_wp
-   end type named_point_t
 contains
    !> "FILE:LINE: " of a group of the scene.
    pure function place_of(item) result(place)

@@ -9,7 +9,7 @@ module scene_tolerances
    use scene_parts, only: stage_t
    implicit none (type, external)
    private
-   public :: ask_key, ask_steps, ask_stress
+   public :: ask_steps, ask_stress
 
    real(wp), parameter :: DEFAULT_TOLERANCE = 1.0e-3_wp  !< Of stages without dt in scenes that give none.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the steps'.
@@ -18,18 +18,6 @@ module scene_tolerances
    real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-3_wp   !< Its bounds.
    real(wp), parameter :: TIGHT = 1.0e-3_wp              !< Below it the scheme of order 3 costs less.
 contains
-   !> A key of the command line, as if the scene said it. It is checked with the others.
-   pure subroutine ask_key(group, key, value, groups)
-      character(*), intent(in) :: group, key
-      character(*), intent(in) :: value           !< Empty: none.
-      type(group_t), intent(inout) :: groups(:)   !< (groups of the scene)
-      integer :: i
-
-      if (value == '') return
-      i = findloc([(groups(i)%name == group, i=1, size(groups))], .true., dim=1)
-      if (i > 0) call set_entry(groups(i), key, value)
-   end subroutine ask_key
-
    !> Steps and tolerance of a stage. docs/theory/host.md section 4.5. Fault EXIT_INPUT: steps = "given" without dt.
    subroutine ask_steps(group, tolerance, by_error, stage, fault)
       type(group_t), intent(in) :: group

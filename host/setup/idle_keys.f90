@@ -5,9 +5,10 @@ module idle_keys
    use generalised_alpha, only: has_rates
    use key_schema, only: key_t, idle_reason, get_text, given, line_of, place_of
    use material_registry, only: is_law
+   use model_types, only: model_t
    use namelists, only: group_t
    use scene_keys, only: keys_of_scenes
-   use scene_types, only: scene_t, WITH_P_W, WITH_P_C
+   use scene_types, only: scene_t
    use texts, only: lower_case, LENGTH
    use warnings, only: print_warning
    implicit none (type, external)
@@ -15,41 +16,40 @@ module idle_keys
    public :: warn_of_idle_keys
 contains
    !> Warns of every key and every definition of a scene that has no effect.
-   subroutine warn_of_idle_keys(scene)
+   subroutine warn_of_idle_keys(scene, model)
       type(scene_t), intent(in) :: scene
+      type(model_t), intent(in) :: model
       type(key_t), allocatable :: keys(:)
       integer :: g, i, k
 
       allocate (keys, source=keys_of_scenes())
-      if (allocated(scene%absent)) then
-         do i = 1, size(scene%absent)
-            call print_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))// &
-                             ''' of &scene has no effect: the scene does not have it.')
-         end do
-      end if
-      do g = 1, size(scene%groups)
-         if (is_law(scene%groups(g)%name)) cycle
-         do i = 1, scene%groups(g)%count
-            k = place_of(keys, scene%groups(g)%name, scene%groups(g)%entries(i)%key)
-            if (k > 0) call judge(keys, keys(k), scene, scene%groups(g))
+      do i = 1, size(scene%absent)
+         call print_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))// &
+                            ''' of &scene has no effect: the scene does not have it.')
+      end do
+      do g = 1, size(scene%as_read)
+         if (is_law(scene%as_read(g)%name)) cycle
+         do i = 1, scene%as_read(g)%count
+            k = place_of(keys, scene%as_read(g)%name, scene%as_read(g)%entries(i)%key)
+            if (k > 0) call judge(keys, keys(k), model, scene%as_read(g))
          end do
       end do
       call warn_of_unused_definitions(keys, scene)
    end subroutine warn_of_idle_keys
 
    !> The conditions of a key that a group gives.
-   subroutine judge(keys, key, scene, group)
+   subroutine judge(keys, key, model, group)
       type(key_t), intent(in) :: keys(:), key
-      type(scene_t), intent(in) :: scene
+      type(model_t), intent(in) :: model
       type(group_t), intent(in) :: group
       character(:), allocatable :: why
 
       why = idle_reason(keys, key, group)
-      if (index(key%acts, ':time') > 0 .and. .not. any(has_rates(scene%stages%kind))) then
+      if (index(key%acts, ':time') > 0 .and. .not. any(has_rates(model%stages%kind))) then
          why = ': every stage is static and has no time; analysis = ''quasi_static'' of &stage has'
-      else if (index(key%acts, ':p_w') > 0 .and. scene%fields < WITH_P_W) then
+      else if (index(key%acts, ':p_w') > 0 .and. .not. model%domain%with_w) then
          why = ': the scene has no field p_w'
-      else if (index(key%acts, ':p_c') > 0 .and. scene%fields < WITH_P_C) then
+      else if (index(key%acts, ':p_c') > 0 .and. .not. model%domain%with_c) then
          why = ': the scene has no field p_c'
       end if
       if (why /= '') call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'// &
@@ -63,12 +63,12 @@ contains
       character(12) :: kind
       integer :: g
 
-      do g = 1, size(scene%groups)
-         associate (group => scene%groups(g))
+      do g = 1, size(scene%as_read)
+         associate (group => scene%as_read(g))
             kind = group%name(:12)
             if (is_law(group%name)) kind = 'material'
             if (.not. any(keys%refers == kind)) cycle
-            if (.not. is_referred_to(keys, scene%groups, kind, name_of(group))) call print_warning( &
+            if (.not. is_referred_to(keys, scene%as_read, kind, name_of(group))) call print_warning( &
                at_line(group%file, group%line)//'&'//trim(group%name)//' '''//name_of(group)// &
                ''' has no effect: no group names it as its '//trim(kind)//'.')
          end associate

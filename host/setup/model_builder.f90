@@ -3,22 +3,24 @@
 !> unknowns numbered.
 module model_builder
    use acting_places, only: check_ground, check_sides
+   use boundary_builder, only: list_actions
    use kinds, only: wp
-   use faults, only: fault_t, raise, EXIT_INPUT
-   use boundary_builder, only: build_plates, build_boundaries
+   use faults, only: fault_t, raise
    use degrees_of_freedom, only: number_unknowns
+   use exit_codes, only: EXIT_GROUP
    use free_bodies, only: check_bodies
    use given_pressures, only: add_centers, check_places
+   use key_table, only: key_table_t
    use load_shapes, only: shape_loads, ties_of
-   use mesh_builder, only: build_mesh
+   use material_registry, only: is_law
    use mesh_look, only: check_carried
-   use model_types, only: model_t, solver_t
-   use named_points, only: find_point
+   use model_types, only: model_t
+   use namelists, only: group_t
    use porous_domain, only: domain_t, prepare_domain
-   use region_builder, only: build_regions
-   use scene_types, only: scene_t, WITH_P_W, WITH_P_C
-   use stage_builder, only: choose_schemes
-   use shape_functions, only: RULES
+   use region_builder, only: build_material
+   use scene_keys, only: build_group
+   use scene_types, only: scene_t, groups_named
+   use stage_builder, only: place_histories, choose_schemes
    use term_registry, only: build_terms
    use texts, only: whole
    !$ use omp_lib, only: omp_get_max_threads
@@ -30,22 +32,34 @@ module model_builder
    real(wp), parameter :: OF_ELASTIC = 7.0e-6_wp, OF_PLASTIC = 5.0e-5_wp
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
-   !> Mesh, regions, boundaries, unknowns and unit loads of a scene. Faults: those of its parts, of check_bodies and
-   !> find_point; EXIT_INPUT: no quadrature rule of so many points; EXIT_ELEMENT: see prepare_domain.
+   !> Group by group, each once what it names is known. Faults: those of the builders of groups and terms, and of the
+   !> checks; EXIT_GROUP: an element of no region; EXIT_ELEMENT: see prepare_domain.
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(out) :: model
       type(fault_t), intent(inout) :: fault
-      integer :: i
 
-      call take_settings(scene, model)
-      call build_domain(scene, model, fault)
-      if (fault%code == 0) call build_regions(scene, model%domain, fault)
+      call begin_model(scene, model)
+      call build('history')
+      call build('scene')
+      call build('fluids')
+      call build('stage')
+      if (fault%code == 0) call place_histories(model, fault)
+      call build('mesh')
+      call build('permeability')
+      call build('retention')
+      call build_materials()
+      call build_regions()
       ! Before plates become nodes: those are the last ones.
       if (fault%code == 0) call add_centers(model%domain)
-      if (fault%code == 0) call build_plates(scene, model, fault)
-      if (fault%code == 0) call choose_threads(scene%threads, model%domain)
-      if (fault%code == 0) call build_boundaries(scene, model, fault)
+      call build('plate')
+      if (fault%code == 0) call choose_threads(model%domain%threads, model%domain)
+      call build('initial')
+      call build('fix')
+      call build('load')
+      call build('contact')
+      call build('tie')
+      call list_actions(model)
       if (fault%code == 0) call build_terms(scene, model, fault)
       if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
@@ -53,44 +67,66 @@ contains
       if (fault%code == 0) call check_sides(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
-      associate (points => model%output%points)
-         do i = 1, size(points)
-            if (fault%code == 0) call find_point(model%domain, points(i), fault)
-         end do
-      end associate
+      call build('point')
       if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
-      call shape_loads(model, model%dofs)
+      call shape_loads(model)
+   contains
+      subroutine build(name)
+         character(*), intent(in) :: name
+         type(group_t), allocatable :: groups(:)
+         type(key_table_t) :: table
+         integer :: i
+
+         allocate (groups, source=groups_named(scene, name))
+         do i = 1, size(groups)
+            table%group = groups(i)
+            if (fault%code == 0) call build_group(table, model, fault)
+         end do
+      end subroutine build
+
+      subroutine build_materials()
+         type(group_t) :: group
+         integer :: i
+
+         do i = 1, size(scene%groups)
+            if (.not. is_law(scene%groups(i)%name)) cycle
+            group = scene%groups(i)
+            if (fault%code == 0) call build_material(group, model, fault)
+         end do
+      end subroutine build_materials
+
+      subroutine build_regions()
+         if (fault%code /= 0) return
+         allocate (model%domain%region_of(size(model%domain%mesh%t6, 2)), source=0)
+         call build('region')
+         if (any(model%domain%region_of == 0) .and. fault%code == 0) call raise(fault, EXIT_GROUP, trim(scene%file)// &
+            ': element '//whole(findloc(model%domain%region_of, 0, dim=1))//' belongs to no &region; add one with '// &
+            'its group, or with group = ''all''.')
+      end subroutine build_regions
    end subroutine build_model
 
-   !> What holds as the scene says it.
-   subroutine take_settings(scene, model)
+   !> Which scene it is of; its lists are empty.
+   subroutine begin_model(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
       integer :: i
 
-      associate (origin => model%origin, output => model%output)
+      associate (origin => model%origin, groups => scene%as_read, domain => model%domain)
          origin%file = scene%file
-         origin%name = scene%name
          origin%fingerprint = scene%fingerprint
          origin%hashes = scene%hashes
-         allocate (origin%groups(size(scene%groups)))
-         do i = 1, size(scene%groups)
-            origin%groups(i) = '&'//trim(scene%groups(i)%name)//' in line '//whole(scene%groups(i)%line)
+         allocate (origin%groups(size(groups)))
+         do i = 1, size(groups)
+            origin%groups(i) = '&'//trim(groups(i)%name)//' in line '//whole(groups(i)%line)
          end do
-         output%checkpoint_steps = scene%checkpoint_steps
-         output%checkpoint_seconds = scene%checkpoint_seconds
-         allocate (output%points(size(scene%points)))
-         do i = 1, size(scene%points)
-            output%points(i)%named_point_t = scene%points(i)
-         end do
+         allocate (domain%permeabilities(0), domain%regions(0), domain%bodies(0), domain%bodies_along_r(0))
       end associate
-      model%amplitudes = scene%amplitudes
-      model%stages = scene%stages
-      model%subtract_flow = scene%subtract_flow
-      model%solver = solver_t(scene%reuse_factors, scene%ordering)
-   end subroutine take_settings
+      allocate (model%materials(0), model%curves(0), model%regions(0), model%amplitudes(0), model%stages(0), &
+                model%initials(0), model%fixes(0), model%loads(0), model%plates(0), model%contacts(0), model%ties(0), &
+                model%output%points(0))
+   end subroutine begin_model
 
    !> Threads of the element loop: those asked for, or as many as have work enough, within OMP_NUM_THREADS. A thread
    !> that is woken for less than a slice of the scheduler costs more than it gives where other programs run.
@@ -110,28 +146,4 @@ contains
       !$ most = omp_get_max_threads()
       domain%threads = max(1, min(most, int(work/WORTH_A_THREAD)))
    end subroutine choose_threads
-
-   !> Options of the domain, its mesh and its fluids.
-   subroutine build_domain(scene, model, fault)
-      type(scene_t), intent(in) :: scene
-      type(model_t), intent(inout) :: model
-      type(fault_t), intent(inout) :: fault
-
-      associate (domain => model%domain)
-         domain%axisymmetric = scene%axisymmetric
-         domain%with_c = scene%fields == WITH_P_C
-         domain%with_w = domain%with_c .or. scene%fields == WITH_P_W
-         domain%n_p = merge(3, 6, scene%linear_pressures)
-         domain%rule = scene%quadrature
-         domain%gravity = scene%gravity
-         domain%seepage_inertia = scene%seepage_inertia
-         domain%full_rate = scene%full_saturation_rate
-         domain%fluids = scene%fluids
-         domain%permeabilities = scene%permeabilities
-         if (.not. any(RULES == domain%rule)) call raise(fault, EXIT_INPUT, trim(scene%file)//': quadrature = '// &
-            whole(domain%rule)//': there are rules of 3, 6, 7 and 12 points.')
-         if (fault%code == 0) call build_mesh(scene%mesh, domain%mesh, fault)
-      end associate
-   end subroutine build_domain
-
 end module model_builder

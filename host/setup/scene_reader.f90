@@ -1,40 +1,29 @@
 ! SPDX-License-Identifier: MIT
-!> Reads a scene: groups in any order, every key checked against the list of keys, before anything is built.
+!> Reads a scene: groups in any order, every key checked against the list of keys, before a model is built of them.
 module scene_reader
    use faults, only: fault_t, raise, EXIT_INPUT
-   use key_table, only: key_table_t
    use namelists, only: group_t, read_groups
    use scene_fingerprint, only: fingerprint_of, hashes_of
-   use scene_tolerances, only: ask_key
-   use scene_keys, only: check_keys, make_lists, take_group
+   use scene_keys, only: check_keys
    use effect_switches, only: remove_effects
-   use kinds, only: wp
    use scene_names, only: check_names
-   use scene_refinement, only: refine_mesh
    use scene_settings, only: apply_settings
    use scene_types, only: scene_t
-   use stage_histories, only: place_histories
    implicit none (type, external)
    private
    public :: read_scene
 contains
    !> Reads and checks a scene; a fault names file, line, value, range and the nearest name. Fault EXIT_INPUT: the file
    !> cannot be read, or a group, key or value is refused; EXIT_GROUP: a stage that nobody defines.
-   subroutine read_scene(file, scene, fault, step_tolerance, fineness, settings)
+   subroutine read_scene(file, scene, fault, settings)
       character(*), intent(in) :: file
       type(scene_t), intent(out) :: scene
       type(fault_t), intent(inout) :: fault
-      character(*), intent(in), optional :: step_tolerance   !< In place of that of the scene; empty: none.
-      character(*), intent(in), optional :: fineness         !< Of the mesh, likewise.
-      character(*), intent(in), optional :: settings(:)      !< Other keys, as GROUP.KEY=VALUE.
+      character(*), intent(in), optional :: settings(:)   !< Keys in place of those of the scene, as GROUP.KEY=VALUE.
       type(group_t), allocatable :: groups(:)
-      type(key_table_t) :: table
-      integer :: i
 
       call read_groups(file, groups, fault)
       if (present(settings) .and. fault%code == 0) call apply_settings(settings, groups, fault)
-      if (present(step_tolerance) .and. fault%code == 0) call ask_key('scene', 'step_tolerance', step_tolerance, groups)
-      if (present(fineness) .and. fault%code == 0) call ask_key('mesh', 'fineness', fineness, groups)
       if (fault%code == 0) call check_keys(groups, fault)
       if (fault%code == 0) call check_names(groups, fault)
       if (fault%code == 0) call check_counts(file, groups, fault)
@@ -42,21 +31,8 @@ contains
       scene%file = file
       scene%fingerprint = fingerprint_of(groups)
       scene%hashes = hashes_of(groups)
-      scene%groups = groups
-      scene%kept = [(.true., i=1, size(groups))]
-      call make_lists(scene)
-      ! &scene says how others are read.
-      table%group = groups(findloc([(groups(i)%name, i=1, size(groups))], 'scene', dim=1))
-      call take_group(table, scene, fault)
-      do i = 1, size(groups)
-         if (fault%code /= 0) return
-         if (groups(i)%name == 'scene') cycle
-         table%group = groups(i)
-         call take_group(table, scene, fault)
-      end do
-      if (fault%code == 0) call place_histories(scene, fault)
-      if (fault%code == 0) call remove_effects(scene, fault)
-      if (fault%code == 0 .and. scene%mesh%fineness > 0.0_wp) call refine_mesh(scene%mesh, fault)
+      call move_alloc(groups, scene%as_read)
+      call remove_effects(scene, fault)
    end subroutine read_scene
 
    !> Groups that occur once, and those without which there is nothing to do.

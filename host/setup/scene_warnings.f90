@@ -63,14 +63,14 @@ contains
       call look_at_sizes(scene, model)
       call look_at_slits(model)
       call look_at_units(scene)
-      call look_at_regions(scene, model)
-      call look_at_materials(scene, model)
-      call look_at_uses(scene, model, tension)
+      call look_at_regions(model)
+      call look_at_materials(model)
+      call look_at_uses(model, tension)
       call look_at_initials(model, tension)
       call warn_of_start(model, balance)
       call warn_of_boundaries(model)
-      call look_at_retentions(scene, model)
-      call warn_of_idle_keys(scene)
+      call look_at_retentions(model)
+      call warn_of_idle_keys(scene, model)
    end subroutine warn_of_scene
 
    !> Units of length, permeability and stiffness.
@@ -81,13 +81,15 @@ contains
       integer :: i
 
       size_of = extent(model%domain%mesh)
-      if (size_of > LARGE_MESH .or. size_of < SMALL_MESH) call print_warning(place_of(scene%mesh)//'the mesh is '// &
-         short(size_of)//' m large; lengths are in m.'//remedy())
-      if (scene%mesh%mesh_file /= '' .and. .not. scene%mesh%scale_given .and. size_of > LARGE_FILE .and. &
-          size_of <= LARGE_MESH) call print_warning(place_of(scene%mesh)//'the mesh of the file is '//short(size_of)// &
-         ' m large; lengths are in m.'//remedy())
-      do i = 1, size(scene%groups)
-         associate (group => scene%groups(i))
+      associate (source => model%mesh_source)
+         if (size_of > LARGE_MESH .or. size_of < SMALL_MESH) call print_warning(place_of(source)//'the mesh is '// &
+            short(size_of)//' m large; lengths are in m.'//remedy())
+         if (source%from_file .and. .not. source%scaled .and. size_of > LARGE_FILE .and. size_of <= LARGE_MESH) &
+            call print_warning(place_of(source)//'the mesh of the file is '//short(size_of)// &
+                               ' m large; lengths are in m.'//remedy())
+      end associate
+      do i = 1, size(scene%as_read)
+         associate (group => scene%as_read(i))
             if (group%name /= 'permeability') cycle
             k = value_of(group, 'intrinsic')
             if (k > PERMEABLE) call print_warning(at_line(group%file, line_of(group, 'intrinsic'))//'intrinsic = '// &
@@ -98,8 +100,8 @@ contains
       do i = 1, size(model%domain%regions)
          select type (law => model%domain%regions(i)%law)
          type is (elastic_t)
-            if (law%young > STIFF) call print_warning(place_of(scene%regions(i))//'material '''// &
-               trim(scene%regions(i)%material_name)//''' has young = '//short(law%young)//' kPa, more than any '// &
+            if (law%young > STIFF) call print_warning(place_of(model%regions(i))//'material '''// &
+               trim(model%regions(i)%material_name)//''' has young = '//short(law%young)//' kPa, more than any '// &
                'soil or metal; moduli are in kPa.')
          end select
       end do
@@ -108,7 +110,7 @@ contains
          character(:), allocatable :: text
 
          text = ''
-         if (scene%mesh%mesh_file /= '') text = ' scale = 1e-3 of &mesh reads millimetres, scale = 1 metres.'
+         if (model%mesh_source%from_file) text = ' scale = 1e-3 of &mesh reads millimetres, scale = 1 metres.'
       end function remedy
    end subroutine look_at_sizes
 
@@ -128,8 +130,8 @@ contains
       real(wp) :: value
       integer :: g, k
 
-      do g = 1, size(scene%groups)
-         associate (group => scene%groups(g))
+      do g = 1, size(scene%as_read)
+         associate (group => scene%as_read(g))
             if (group%name /= 'fluids' .and. group%name /= 'region') cycle
             do k = 1, size(USUAL)
                if (.not. given(group, trim(USUAL(k)%key))) cycle
@@ -144,28 +146,26 @@ contains
    end subroutine look_at_units
 
    !> Regions without an element.
-   subroutine look_at_regions(scene, model)
-      type(scene_t), intent(in) :: scene
+   subroutine look_at_regions(model)
       type(model_t), intent(in) :: model
       integer :: i
 
-      do i = 1, size(scene%regions)
+      do i = 1, size(model%regions)
          if (any(model%domain%region_of == i)) cycle
-         call print_warning(place_of(scene%regions(i))//'the region '''//trim(scene%regions(i)%group_name)// &
+         call print_warning(place_of(model%regions(i))//'the region '''//trim(model%regions(i)%group_name)// &
             ''' has no element'//trim(merge(': other regions name them all.', '.                             ', &
-            scene%regions(i)%rest)))
+            model%regions(i)%rest)))
       end do
    end subroutine look_at_regions
 
    !> What laws say of their parameters, and laws in another unit of stress: each material once.
-   subroutine look_at_materials(scene, model)
-      type(scene_t), intent(in) :: scene
+   subroutine look_at_materials(model)
       type(model_t), intent(in) :: model
       integer :: i
 
       do i = 1, size(model%domain%regions)
-         associate (given => scene%regions(i), law => model%domain%regions(i)%law)
-            if (any(scene%regions(:i - 1)%material_name == given%material_name)) cycle
+         associate (given => model%regions(i), law => model%domain%regions(i)%law)
+            if (any(model%regions(:i - 1)%material_name == given%material_name)) cycle
             if (law%doubt /= '') call print_warning(trim(law%doubt))
             if (law%unit%name /= KILOPASCAL%name) call print_warning(place_of(given)//'material '''// &
                trim(given%material_name)//''' has a p_atm of '//short(ATMOSPHERE*law%unit%factor)//'; scenes are '// &
@@ -175,8 +175,7 @@ contains
    end subroutine look_at_materials
 
    !> Laws that are used outside the tests behind them. A few points at low stress, as below a surface, are none.
-   subroutine look_at_uses(scene, model, tension)
-      type(scene_t), intent(in) :: scene
+   subroutine look_at_uses(model, tension)
       type(model_t), intent(in) :: model
       type(tension_t), intent(in) :: tension
       integer :: i
@@ -184,7 +183,7 @@ contains
       do i = 1, size(tension%uses)
          associate (used => tension%uses(i), law => model%domain%regions(i)%law)
             if (used%outside_e == 0 .and. used%outside_p <= FEW*used%points) cycle
-            call print_warning(place_of(scene%regions(i))//'material '''//trim(scene%regions(i)%material_name)// &
+            call print_warning(place_of(model%regions(i))//'material '''//trim(model%regions(i)%material_name)// &
                ''' begins outside what it was fitted to at '//whole(max(used%outside_e, used%outside_p))//' of '// &
                whole(used%points)//' points: '//untested(law, used%e, used%p)//'.')
          end associate
@@ -229,16 +228,15 @@ contains
    end subroutine look_at_initials
 
    !> Names of curves that are not looked up because the scene has no suction.
-   subroutine look_at_retentions(scene, model)
-      type(scene_t), intent(in) :: scene
+   subroutine look_at_retentions(model)
       type(model_t), intent(in) :: model
       integer :: i
 
       if (model%domain%with_c) return
-      do i = 1, size(scene%regions)
-         associate (region => scene%regions(i))
+      do i = 1, size(model%regions)
+         associate (region => model%regions(i))
             if (any([character(8) :: '', 'material', 'mud'] == region%retention_name)) cycle
-            if (any(scene%retentions%name == region%retention_name)) cycle
+            if (any(model%curves%name == region%retention_name)) cycle
             call print_warning(place_of(region)//'no &retention is named '''//trim(region%retention_name)// &
                                '''; the scene has no suction, which would refuse it.')
          end associate

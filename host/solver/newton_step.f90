@@ -52,83 +52,77 @@ module newton_step
       logical :: done = .false., again = .false.   !< The step is solved; its equations are made again.
    end type iterate_t
 contains
-   !> Solves a step from solution%state to solution%next over scheme%dt; the latter is of use only after CONVERGED.
-   !> docs/theory/host.md section 5. log%outcome says how it ends: CONVERGED; NOT_CONVERGED after max_iterations or
-   !> beyond an error of 1e10; MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see assembly,
-   !> contacts); BODY_FREE with a singular matrix; EQUATIONS_LOST where they are not finite; SOLVER_FAILED.
-   subroutine take_step(domain, dofs, scheme, control, solution, log)
+   !> Solves a step from solution%state to solution%next by its scheme; the latter is of use only after CONVERGED.
+   !> docs/theory/host.md section 5. The outcome of its log says how it ends: CONVERGED; NOT_CONVERGED after
+   !> max_iterations or beyond an error of 1e10; MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see
+   !> assembly, contacts); BODY_FREE with a singular matrix; EQUATIONS_LOST where they are not finite; SOLVER_FAILED.
+   subroutine take_step(domain, dofs, solution)
       type(domain_t), intent(inout) :: domain   !< The tolerance of its laws changes, see stress_tolerance.
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(control_t), intent(in) :: control
       type(solution_t), intent(inout) :: solution
-      type(log_t), intent(out) :: log
       type(iterate_t) :: at
       integer :: status
 
       at%t0 = clock()
-      call begin_step(domain, dofs, scheme, control, solution, at, log)
-      if (log%outcome /= CONVERGED) return
-      do
-         call make_equations(domain, dofs, scheme, control, solution, at, log)
-         if (log%outcome /= CONVERGED) then
-            if (.not. at%guessed .or. log%iterations > 0) return
-            call drop_guess(scheme, solution, at, log)
-            cycle
-         end if
-         if (log%iterations > 0) then
-            call judge_iterate(domain, dofs, scheme, control, solution, at, log)
-            if (at%done) exit
-            if (log%outcome /= CONVERGED) return
-            if (at%again) cycle
-            ! The slopes at the present values, where the last pass left them out.
-            if (.not. at%with_slopes) then
-               at%with_slopes = .true.
-               solution%assembly%source = AS_BEFORE
-               call make_equations(domain, dofs, scheme, control, solution, at, log)
-               if (log%outcome /= CONVERGED) return
+      solution%log = log_t()
+      associate (s => solution, log => solution%log, system => solution%system)
+         call begin_step(domain, dofs, solution, at)
+         if (log%outcome /= CONVERGED) return
+         do
+            call make_equations(domain, dofs, solution, at)
+            if (log%outcome /= CONVERGED) then
+               if (.not. at%guessed .or. log%iterations > 0) return
+               call drop_guess(solution, at)
+               cycle
             end if
-         end if
-         associate (s => solution)
+            if (log%iterations > 0) then
+               call judge_iterate(domain, dofs, solution, at)
+               if (at%done) exit
+               if (log%outcome /= CONVERGED) return
+               if (at%again) cycle
+               ! The slopes at the present values, where the last pass left them out.
+               if (.not. at%with_slopes) then
+                  at%with_slopes = .true.
+                  s%assembly%source = AS_BEFORE
+                  call make_equations(domain, dofs, solution, at)
+                  if (log%outcome /= CONVERGED) return
+               end if
+            end if
             call constrain(dofs, s%pattern, s%constraint, s%next%x, s%assembly%values, at%rhs)
-            if (log%iterations == 0) call find_roundings(domain, dofs, scheme, control, solution, at)
+            if (log%iterations == 0) call find_roundings(domain, dofs, solution, at)
             ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
-            if (all(control%measure /= [BY_FORCES, BY_CHANGE])) s%system%factored = .false.
-            call solve_step(dofs, s%pattern, s%constraint, s%assembly, linear_tolerance(control), at%rhs, s%system, &
+            if (all(s%newton%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
+            call solve_step(dofs, s%pattern, s%constraint, s%assembly, linear_tolerance(s%newton), at%rhs, system, &
                             at%dx, status)
-            if (needs_stiffness(status, s%system, s%assembly%fallback)) then
+            if (needs_stiffness(status, system, s%assembly%fallback)) then
                at%with_slopes = .true.
                at%t0 = clock()
                cycle
             end if
-         end associate
-         if (status /= SOLVED) then
-            log%outcome = outcome_of(status)
-            return
-         end if
-         call correct(dofs, scheme, solution, at, log)
-      end do
-      associate (system => solution%system)
+            if (status /= SOLVED) then
+               log%outcome = outcome_of(status)
+               return
+            end if
+            call correct(dofs, solution, at)
+         end do
          ! Those of iterates on the way, and of steps that fail, may be of any size.
          system%largest = max(system%largest, log%forces)
          system%first_error = maxval(log%first_error)
          if (allocated(system%contacts)) call system%contacts%follow_turns(fresh=.true.)
-         solution%assembly%slopes%known = .true.
+         s%assembly%slopes%known = .true.
          call add_elapsed(system%seconds(T_REST), at%t0)
       end associate
    end subroutine take_step
 
    !> Sets a step at its first guess, and says how closely its passes are integrated.
-   subroutine begin_step(domain, dofs, scheme, control, solution, at, log)
+   subroutine begin_step(domain, dofs, solution, at)
       type(domain_t), intent(inout) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(control_t), intent(in) :: control
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
-      type(log_t), intent(inout) :: log
 
-      associate (old => solution%state, new => solution%next, assembly => solution%assembly, system => solution%system)
+      associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
+                 system => solution%system, scheme => solution%scheme, control => solution%newton, log => solution%log)
          allocate (at%rhs(dofs%n), at%dx(dofs%n))
          at%guessed = .not. control%no_predictor
          new%time = old%time + scheme%dt
@@ -137,7 +131,7 @@ contains
          call follow_newton(control%tolerance, domain%regions)
          at%rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
          if (at%rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES), &
-                                         control, domain, at)
+                                         control%tolerance, domain, at)
          if (allocated(system%contacts)) then
             call system%contacts%follow_turns(fresh=.true.)
             if (assembly%with_change) then
@@ -151,47 +145,42 @@ contains
    end subroutine begin_step
 
    !> Begins a step again from what is known: a guess that is refused says nothing of the step.
-   subroutine drop_guess(scheme, solution, at, log)
-      type(scheme_t), intent(in) :: scheme
+   subroutine drop_guess(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
-      type(log_t), intent(inout) :: log
 
       at%guessed = .false.
-      log%refused_guess = .true.
-      log%outcome = CONVERGED
+      solution%log%refused_guess = .true.
+      solution%log%outcome = CONVERGED
       associate (old => solution%state, new => solution%next)
          new%x = old%x
-         call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+         call advance_rates(solution%scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       end associate
    end subroutine drop_guess
 
    !> Integrates the stresses of the next pass to a share of an error of Newton's method: the first passes cost less.
    !> docs/theory/host.md section 5.1.
-   subroutine follow_error(error, control, domain, at)
-      real(wp), intent(in) :: error   !< [-]
-      type(control_t), intent(in) :: control
+   subroutine follow_error(error, tolerance, domain, at)
+      real(wp), intent(in) :: error, tolerance   !< [-]; of Newton's method.
       type(domain_t), intent(inout) :: domain
       type(iterate_t), intent(inout) :: at
 
-      at%rough = error > control%tolerance/STRESS_SHARE
-      call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), control%tolerance, at%rough), domain%regions)
+      at%rough = error > tolerance/STRESS_SHARE
+      call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), tolerance, at%rough), domain%regions)
    end subroutine follow_error
 
    !> Makes the residual of the iterate, with minus sign in at%rhs, and its slopes where they are asked for.
    !> log%outcome: CONTACT_FAILED, MATERIAL_FAILED where these refuse it.
-   subroutine make_equations(domain, dofs, scheme, control, solution, at, log)
+   subroutine make_equations(domain, dofs, solution, at)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(control_t), intent(in) :: control
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
-      type(log_t), intent(inout) :: log
       real(wp) :: spent
 
       associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
-                 system => solution%system, pattern => solution%pattern)
+                 system => solution%system, pattern => solution%pattern, scheme => solution%scheme, &
+                 tolerance => solution%newton%tolerance, log => solution%log)
          spent = 0.0_wp
          call add_elapsed(system%seconds(T_REST), at%t0)
          if (.not. update_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), at%with_slopes, &
@@ -212,28 +201,26 @@ contains
          end if
          call add_what_acts(dofs, pattern, scheme, solution%constraint, old, new, at%with_slopes, at%touched, &
                             assembly, system, at%rhs, at%t0)
-         assembly%unresolved = at%rounded(1)/control%tolerance
+         assembly%unresolved = at%rounded(1)/tolerance
          if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1)) &
-                                                               /control%tolerance
+                                                               /tolerance
          if (log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
       end associate
    end subroutine make_equations
 
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
    !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.
-   subroutine judge_iterate(domain, dofs, scheme, control, solution, at, log)
+   subroutine judge_iterate(domain, dofs, solution, at)
       type(domain_t), intent(inout) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(control_t), intent(in) :: control
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
-      type(log_t), intent(inout) :: log
       real(wp) :: norm
       logical :: turned, good
 
       at%again = .false.
-      associate (constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
+      associate (constraint => solution%constraint, assembly => solution%assembly, system => solution%system, &
+                 control => solution%newton, log => solution%log)
          call choose_sides(dofs, solution%pattern, assembly%values, solution%next%x, at%rhs, assembly%scale, &
                            control%tolerance, constraint, turned)
          if (allocated(system%contacts)) turned = turned .or. system%contacts%turns
@@ -243,62 +230,60 @@ contains
          if (log%iterations == 1) then
             log%first_error = log%error
             at%norm_0 = max(at%norm_0, norm)
-            log%balanced = at%norm_0 <= rounding_in(scheme%has_inertia)*norm2(assembly%scale)
+            log%balanced = at%norm_0 <= rounding_in(solution%scheme%has_inertia)*norm2(assembly%scale)
             at%begun = max(at%norm_0, ROUNDING*norm2(assembly%scale))
          end if
          log%reduction = norm/max(at%begun, tiny(1.0_wp))
+         ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
+         if (.not. turned) then
+            good = good_enough(control, log)
+            at%done = good .and. .not. at%rough
+            at%again = good .and. at%rough
+            if (at%again) call follow_error(0.0_wp, control%tolerance, domain, at)
+            if (good) return
+            call note_stagnation(control, log)
+            at%done = log%stagnated
+            if (at%done) return
+            if (at%rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0), control%tolerance, &
+                                            domain, at)
+         end if
+         if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. .not. all(log%error < HOPELESS)) &
+            log%outcome = NOT_CONVERGED
       end associate
-      ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
-      if (.not. turned) then
-         good = good_enough(control, log)
-         at%done = good .and. .not. at%rough
-         at%again = good .and. at%rough
-         if (at%again) call follow_error(0.0_wp, control, domain, at)
-         if (good) return
-         call note_stagnation(control, log)
-         at%done = log%stagnated
-         if (at%done) return
-         if (at%rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0), control, domain, at)
-      end if
-      if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. .not. all(log%error < HOPELESS)) &
-         log%outcome = NOT_CONVERGED
    end subroutine judge_iterate
 
    !> Finds what no residual of a step can be told from, before its first solution. A prescribed motion that strains
    !> nothing leaves the rounding of the forces that it asked for, and no other.
-   subroutine find_roundings(domain, dofs, scheme, control, solution, at)
+   subroutine find_roundings(domain, dofs, solution, at)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(control_t), intent(in) :: control
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
-      associate (system => solution%system, constraint => solution%constraint, assembly => solution%assembly)
-         system%rounding = rounding_in(scheme%has_inertia)/control%tolerance*asked_for(dofs, at%rhs)
+      associate (system => solution%system, constraint => solution%constraint, assembly => solution%assembly, &
+                 scheme => solution%scheme, tolerance => solution%newton%tolerance)
+         system%rounding = rounding_in(scheme%has_inertia)/tolerance*asked_for(dofs, at%rhs)
          system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
-            rounding_of_saturation(domain, dofs, constraint, solution%state, scheme)/control%tolerance)
+            rounding_of_saturation(domain, dofs, constraint, solution%state, scheme)/tolerance)
          at%rounded = rounding_of_unknowns(dofs, solution%pattern, constraint, assembly%values, solution%next%x)
-         system%rounding = max(system%rounding, at%rounded/control%tolerance)
-         assembly%unresolved = max(assembly%unresolved, at%rounded(1)/control%tolerance)
+         system%rounding = max(system%rounding, at%rounded/tolerance)
+         assembly%unresolved = max(assembly%unresolved, at%rounded(1)/tolerance)
       end associate
    end subroutine find_roundings
 
    !> Adds a linear solution to the iterate.
-   subroutine correct(dofs, scheme, solution, at, log)
+   subroutine correct(dofs, solution, at)
       type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
-      type(log_t), intent(inout) :: log
 
       at%t0 = clock()
-      log%iterations = log%iterations + 1
+      solution%log%iterations = solution%log%iterations + 1
       if (allocated(solution%system%contacts)) call solution%system%contacts%follow_turns(fresh=.false.)
-      log%before = log%changed
-      associate (old => solution%state, new => solution%next)
+      associate (old => solution%state, new => solution%next, log => solution%log)
+         log%before = log%changed
          call add_correction(dofs, at%dx, new%x, log%correction, log%changed)
-         call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+         call advance_rates(solution%scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       end associate
       at%with_slopes = .false.
    end subroutine correct
@@ -445,17 +430,17 @@ contains
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
    !> docs/theory/host.md section 4.1. Into `a` of both states, which are equal [m/s2]. Outcomes as of take_step, but
    !> for NOT_CONVERGED.
-   subroutine start_accelerations(domain, dofs, solution, log)
+   subroutine start_accelerations(domain, dofs, solution)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       type(solution_t), intent(inout) :: solution
-      type(log_t), intent(out) :: log
       type(constraint_t) :: held
       type(scheme_t) :: scheme
       real(wp), allocatable :: rhs(:), dx(:)
       integer :: status, i, f, steps
 
-      associate (state => solution%state, work => solution%next, pattern => solution%pattern, &
+      solution%log = log_t()
+      associate (state => solution%state, work => solution%next, pattern => solution%pattern, log => solution%log, &
                  constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
          ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
          scheme = scheme_t(has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, &

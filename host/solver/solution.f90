@@ -1,9 +1,11 @@
 ! SPDX-License-Identifier: MIT
-!> Solution on which a step is taken: the matrix, what is prescribed, the states before and after, and the place in
-!> the stages.
+!> Solution on which a step is taken: the matrix, what is prescribed, the states before and after, the place in the
+!> stages, and how the step is taken.
 module solution
    use kinds, only: wp
+   use convergence, only: control_t, log_t
    use equation_assembly, only: assembly_t
+   use generalised_alpha, only: scheme_t
    use linear_system, only: system_t
    use porous_domain, only: model_state_t
    use prescribed_values, only: constraint_t
@@ -34,6 +36,10 @@ module solution
       type(constraint_t) :: constraint
       type(model_state_t) :: state, next             !< Before and after the step under way.
       type(stage_state_t) :: at
+      ! The step under way, or the last one.
+      type(scheme_t) :: scheme                 !< It has the length of the step, or of the attempt.
+      type(control_t) :: newton                !< Limits of Newton's method.
+      type(log_t) :: log                       !< Log of Newton's method.
    end type solution_t
 contains
    !> Share of the stage that is over at a time. [-]

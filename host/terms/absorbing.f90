@@ -18,12 +18,12 @@ module absorbing
    use linear_forces, only: linear_forces_t
    use material_point, only: response_t, batch_report_t
    use model_types, only: model_t, action_t, factor_at
-   use name_search, only: mesh_group, defined_name
+   use name_search, only: mesh_group, history_named
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: model_state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -47,8 +47,7 @@ module absorbing
       type(side_t), allocatable :: sides(:)
       logical :: at_start = .false.              !< Of a stage: what the sides held is not known yet.
    contains
-      procedure, nopass :: declare
-      procedure :: build, begin_run, begin_stage, before_step, exchange
+      procedure :: build_group, begin_run, begin_stage, before_step, exchange
    end type absorbing_t
 
    !> The ground behind an edge.
@@ -57,18 +56,15 @@ module absorbing
       real(wp) :: water = 0.0_wp, air = 0.0_wp      !< Outflow over the rate of the pressure, k/(eta c_p) [m/(kPa)].
    end type behind_t
 contains
-   subroutine declare(k)
+   !> A boundary. Fault EXIT_GROUP: a boundary or history that is not defined, or a group without edges.
+   subroutine build_group(self, k, number, model, fault)
+      class(absorbing_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
-      type(side_t) :: nothing
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(side_t) :: side
       character(LENGTH) :: boundary, history
-
-      call take(k, nothing, boundary, history)
-   end subroutine declare
-
-   subroutine take(k, side, boundary, history)
-      type(key_table_t), intent(inout) :: k
-      type(side_t), intent(inout) :: side
-      character(LENGTH), intent(out) :: boundary, history
 
       boundary = ''
       history = ''
@@ -83,39 +79,21 @@ contains
       call k%number('v_z', side%velocity(2), -UNBOUNDED, UNBOUNDED, 'velocity along z of the incoming wave [m/s]')
       call k%text('history', history, 'factor on v_r and v_z', refers='history')
       call k%texts('stages', side%stages, 'names of stages; default: all')
-   end subroutine take
-
-   !> The boundaries. Fault EXIT_GROUP: a boundary, history or stage that is not defined, or a group without edges.
-   subroutine build(self, tables, scene, model, there, fault)
-      class(absorbing_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
-      type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
-      type(fault_t), intent(inout) :: fault
-      character(LENGTH) :: boundary, history
-      integer :: i
-
-      there = size(tables) > 0
-      allocate (self%sides(size(tables)))
-      do i = 1, size(tables)
-         associate (side => self%sides(i))
-            side%scene_item_t = item_of(tables(i)%group)
-            side%what = '&'//NAME
-            side%along_normal = .true.
-            side%bears = .true.
-            side%damps = .true.
-            call take(tables(i), side, boundary, history)
-            side%group = mesh_group(model%domain%mesh, boundary, place_of(side), fault)
-            if (fault%code == 0 .and. history /= '') &
-               side%amplitude = defined_name('history', history, model%amplitudes%name, place_of(side), fault)
-            if (fault%code /= 0) return
-            if (size(model%domain%mesh%groups(side%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, &
-               place_of(side)//'group '''//trim(boundary)//''' has no edges that waves could leave through.')
-            model%actions = [model%actions, side%action_t]
-         end associate
-      end do
-   end subroutine build
+      if (k%lists) return
+      side%scene_item_t = item_of(k%group)
+      side%what = '&'//NAME
+      side%along_normal = .true.
+      side%bears = .true.
+      side%damps = .true.
+      side%group = mesh_group(model%domain%mesh, boundary, place_of(side), fault)
+      if (fault%code == 0) side%amplitude = history_named(history, model%amplitudes%name, place_of(side), fault)
+      if (fault%code /= 0) return
+      if (size(model%domain%mesh%groups(side%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, place_of(side)// &
+         'group '''//trim(boundary)//''' has no edges that waves could leave through.')
+      model%actions = [model%actions, side%action_t]
+      if (.not. allocated(self%sides)) allocate (self%sides(0))
+      self%sides = [self%sides, side]
+   end subroutine build_group
 
    !> Dashpots of the boundaries. docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: the ground has no stiffness, or
    !> its material refuses.

@@ -17,7 +17,7 @@ module buffer
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of, acts_in
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use sparsity_pattern, only: pattern_t, place_of_entry => place_of
    use unknown_fields, only: AT_U_Z
@@ -38,7 +38,8 @@ module buffer
 
    !> What a group of the scene says.
    type, extends(scene_item_t) :: given_t
-      character(LENGTH) :: upper = '', lower = ''    !< Plates.
+      character(LENGTH) :: upper = '', lower = ''    !< Names of the plates.
+      integer :: plates(2) = 0                       !< Places of the upper and the lower one.
       character(LENGTH), allocatable :: stages(:)
       type(spring_t) :: spring
       integer :: place = 0                           !< Place of the spring in the constraint.
@@ -46,22 +47,18 @@ module buffer
 
    type, extends(scene_term_t) :: buffer_t
       type(given_t), allocatable :: all(:)
-      integer, allocatable :: plates(:, :)           !< (2, buffers) Upper and lower ones.
    contains
-      procedure, nopass :: declare
-      procedure :: build, begin_run, begin_stage
+      procedure :: build_group, begin_run, begin_stage
    end type buffer_t
 contains
-   subroutine declare(k)
+   !> Fault EXIT_GROUP: a plate that is not defined. EXIT_INPUT: one plate at both ends.
+   subroutine build_group(self, k, number, model, fault)
+      class(buffer_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
-      type(given_t) :: nothing
-
-      call take(k, nothing)
-   end subroutine declare
-
-   subroutine take(k, one)
-      type(key_table_t), intent(inout) :: k
-      type(given_t), intent(inout) :: one
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(given_t) :: one
 
       call k%text('upper', one%upper, 'name of the &plate above: a mass that falls or stands', REQUIRED)
       call k%text('lower', one%lower, 'name of the &plate below it', REQUIRED)
@@ -73,33 +70,16 @@ contains
                     'way of the upper plate to the end of the spring at the start [m]', 'tension=no')
       call k%flag('tension', one%spring%pulls, 'no|yes', 'yes', 'yes: the plates are joined; no: they may part')
       call k%texts('stages', one%stages, 'names of stages; default: all')
-   end subroutine take
-
-   !> Fault EXIT_GROUP: a plate or stage that is not defined. EXIT_INPUT: one plate at both ends.
-   subroutine build(self, tables, scene, model, there, fault)
-      class(buffer_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
-      type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
-      type(fault_t), intent(inout) :: fault
-      integer :: i
-
-      there = size(tables) > 0
-      allocate (self%all(size(tables)), self%plates(2, size(tables)))
-      do i = 1, size(tables)
-         associate (one => self%all(i))
-            one%scene_item_t = item_of(tables(i)%group)
-            call take(tables(i), one)
-            self%plates(1, i) = defined_name('upper', one%upper, model%plates%name, place_of(one), fault)
-            if (fault%code == 0) &
-               self%plates(2, i) = defined_name('lower', one%lower, model%plates%name, place_of(one), fault)
-            if (fault%code /= 0) return
-            if (one%upper == one%lower) call raise(fault, EXIT_INPUT, place_of(one)//'upper and lower are both '''// &
-               trim(one%upper)//'''; name the two plates that the buffer lies between.')
-         end associate
-      end do
-   end subroutine build
+      if (k%lists) return
+      one%scene_item_t = item_of(k%group)
+      one%plates(1) = defined_name('upper', one%upper, model%plates%name, place_of(one), fault)
+      if (fault%code == 0) one%plates(2) = defined_name('lower', one%lower, model%plates%name, place_of(one), fault)
+      if (fault%code /= 0) return
+      if (one%upper == one%lower) call raise(fault, EXIT_INPUT, place_of(one)//'upper and lower are both '''// &
+         trim(one%upper)//'''; name the two plates that the buffer lies between.')
+      if (.not. allocated(self%all)) allocate (self%all(0))
+      self%all = [self%all, one]
+   end subroutine build_group
 
    !> Springs between the unknowns of the plates, which meet in the matrix from now on.
    subroutine begin_run(self, model, solution, fault)
@@ -112,8 +92,8 @@ contains
 
       do i = 1, size(self%all)
          associate (spring => self%all(i)%spring)
-            spring%upper = model%dofs%of(AT_U_Z, model%plates(self%plates(1, i))%node)
-            spring%lower = model%dofs%of(AT_U_Z, model%plates(self%plates(2, i))%node)
+            spring%upper = model%dofs%of(AT_U_Z, model%plates(self%all(i)%plates(1))%node)
+            spring%lower = model%dofs%of(AT_U_Z, model%plates(self%all(i)%plates(2))%node)
             pairs(:, i) = [spring%upper, spring%lower]
             box%it = spring
             solution%constraint%added = [solution%constraint%added, box]

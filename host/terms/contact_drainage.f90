@@ -13,7 +13,7 @@ module contact_drainage
    use faults, only: fault_t, raise, EXIT_INPUT
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -24,56 +24,52 @@ module contact_drainage
       logical, allocatable :: follows(:)        !< (contacts) Whether its drainage follows its state.
       logical, allocatable :: gives_way(:, :)   !< (fixes, contacts) A pressure prescribed along edges of the slave.
    contains
-      procedure, nopass :: declare
-      procedure :: build, before_step
+      procedure :: build_group, build, before_step
    end type contact_drainage_t
 
    real(wp), parameter :: HALF = 0.5_wp*(1 - 1.0e-9_wp)   !< Up to rounding: half an edge may lie exactly opposite.
 contains
-   subroutine declare(k)
+   !> Which &fix give way to a contact: those that prescribe a pressure on all nodes of an edge of the slave. Fault
+   !> EXIT_INPUT: the scene has no pressures, or a contact whose drainage follows its state has no such &fix.
+   subroutine build_group(self, k, number, model, fault)
+      class(contact_drainage_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
       logical :: follows
+      integer :: f
 
       follows = .false.
-      call take(k, follows)
-   end subroutine declare
-
-   subroutine take(k, follows)
-      type(key_table_t), intent(inout) :: k
-      logical, intent(inout) :: follows
-
       call k%flag('drainage', follows, 'fixed|state', 'state', &
                   'state: nodes in contact are released from &fix of pressures')
-   end subroutine take
-
-   !> Which &fix give way to which contacts: those that prescribe a pressure on all nodes of an edge of the slave. Fault
-   !> EXIT_INPUT: the scene has no pressures, or a contact whose drainage follows its state has no such &fix.
-   subroutine build(self, tables, scene, model, there, fault)
-      class(contact_drainage_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
-      type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
-      type(fault_t), intent(inout) :: fault
-      integer :: c, f
-
-      allocate (self%follows(size(model%contacts)), source=.false.)
-      allocate (self%gives_way(size(model%fixes), size(model%contacts)), source=.false.)
-      do c = 1, size(model%contacts)
-         call take(tables(c), self%follows(c))
-         if (.not. self%follows(c)) cycle
-         if (.not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(item_of(tables(c)%group))// &
-            'drainage = ''state'' needs pressures; see fields in &scene.')
-         if (fault%code /= 0) return
-         do f = 1, size(model%fixes)
-            if (model%fixes(f)%field <= DISPLACEMENTS) cycle
-            self%gives_way(f, c) = share_an_edge(model, model%contacts(c)%slave, model%fixes(f)%group)
-         end do
-         if (.not. any(self%gives_way(:, c))) call raise(fault, EXIT_INPUT, 'Contact '// &
-            trim(model%contacts(c)%name)//': drainage = ''state'' releases &fix of p_w, p_c or p_a on the slave, '// &
-            'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')
+      if (k%lists) return
+      if (.not. allocated(self%follows)) then
+         allocate (self%follows(size(model%contacts)), source=.false.)
+         allocate (self%gives_way(size(model%fixes), size(model%contacts)), source=.false.)
+      end if
+      self%follows(number) = follows
+      if (.not. follows) return
+      if (.not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(item_of(k%group))// &
+         'drainage = ''state'' needs pressures; see fields in &scene.')
+      if (fault%code /= 0) return
+      do f = 1, size(model%fixes)
+         if (model%fixes(f)%field <= DISPLACEMENTS) cycle
+         self%gives_way(f, number) = share_an_edge(model, model%contacts(number)%slave, model%fixes(f)%group)
       end do
-      there = any(self%follows)
+      if (.not. any(self%gives_way(:, number))) call raise(fault, EXIT_INPUT, 'Contact '// &
+         trim(model%contacts(number)%name)//': drainage = ''state'' releases &fix of p_w, p_c or p_a on the slave, '// &
+         'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')
+   end subroutine build_group
+
+   !> Raises no fault.
+   subroutine build(self, model, there, fault)
+      class(contact_drainage_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(inout) :: there
+      type(fault_t), intent(inout) :: fault
+
+      if (there) there = any(self%follows)
    end subroutine build
 
    !> Whether a group has all nodes of an edge of the slave: a boundary that only ends on it does not give way.

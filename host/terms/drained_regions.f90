@@ -6,11 +6,9 @@ module drained_regions
    use kinds, only: wp
    use faults, only: fault_t
    use given_pressures, only: pressures_at_start, nodes_with_flow
-   use key_table, only: key_table_t
    use model_types, only: model_t
    use porous_domain, only: domain_t, DRAINED, UNDRAINED
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use solution, only: solution_t
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
@@ -23,12 +21,10 @@ module drained_regions
    end type drained_regions_t
 contains
    !> Its key is one of regions, which are built before. Raises no fault.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, model, there, fault)
       class(drained_regions_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
+      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
 
       there = any(model%domain%regions%drainage == DRAINED .or. model%domain%regions%drainage == UNDRAINED)

@@ -12,7 +12,6 @@ module friction
    use contact_types, only: contact_options_t, has_friction
    use faults, only: fault_t, raise
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use solution, only: solution_t
    implicit none (type, external)
    private
@@ -20,42 +19,35 @@ module friction
 
    type, extends(scene_term_t) :: friction_t
    contains
-      procedure, nopass :: declare
-      procedure :: build, before_step, accept, exchange
+      procedure :: build_group, build, before_step, accept, exchange
    end type friction_t
 contains
-   subroutine declare(k)
+   !> The options of a contact. Raises no fault.
+   subroutine build_group(self, k, number, model, fault)
+      class(friction_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
       type(contact_options_t) :: options
 
-      call take(k, options)
-   end subroutine declare
-
-   subroutine take(k, options)
-      type(key_table_t), intent(inout) :: k
-      type(contact_options_t), intent(inout) :: options
-
+      if (.not. k%lists) options = model%contacts(number)%options
       call k%number('friction', options%friction, 0.0_wp, 100.0_wp, 'coefficient of Coulomb friction [-]')
       call k%number('cohesion', options%cohesion, 0.0_wp, UNBOUNDED, 'shear stress that friction adds to [kPa]')
       call k%number('tangential_penalty', options%tangential_penalty, 0.0_wp, UNBOUNDED, &
                     'shear stress of a unit of slip before it slides [kN/m3]; 0: a tenth of the penalty')
-   end subroutine take
+      if (.not. k%lists) model%contacts(number)%options = options
+   end subroutine build_group
 
-   !> The options of the contacts. Raises no fault.
-   subroutine build(self, tables, scene, model, there, fault)
+   !> Raises no fault.
+   subroutine build(self, model, there, fault)
       class(friction_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
+      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
       integer :: c
 
-      there = .false.
-      do c = 1, size(model%contacts)
-         call take(tables(c), model%contacts(c)%options)
-         there = there .or. has_friction(model%contacts(c)%options)
-      end do
+      there = any([(has_friction(model%contacts(c)%options), c=1, size(model%contacts))])
    end subroutine build
 
    !> Displacements and gaps that the friction of a step starts from. Fault EXIT_CONVERGENCE: a kernel refuses them.

@@ -9,11 +9,10 @@ module plane_plates
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
-   use model_types, only: model_t, plate_t, coordinate_t
+   use model_types, only: model_t, acting_t, plate_t, coordinate_t
    use plate_motion, only: plate_motion_t
-   use scene_parts, only: acting_values_t, place_of
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use triangle_mesh, only: find_group
    use unknown_fields, only: AT_U_R, AT_U_Z
    implicit none (type, external)
@@ -26,8 +25,7 @@ module plane_plates
 
    type, extends(scene_term_t) :: plane_plates_t
    contains
-      procedure, nopass :: declare
-      procedure :: build
+      procedure :: build_group, build
    end type plane_plates_t
 
    !> u_z and u_r of the centre, and the lever times the angle, from r to z.
@@ -46,16 +44,15 @@ module plane_plates
       real(wp) :: penalty = 1.0e9_wp
    end type given_t
 contains
-   subroutine declare(k)
+   !> Gives a plate its motion in the plane. Fault EXIT_INPUT: a motion that axial symmetry has no place for, or that
+   !> lacks centre or inertia. EXIT_GROUP: the name of its group is taken, or no edges could move with the plate.
+   subroutine build_group(self, k, number, model, fault)
+      class(plane_plates_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
-      type(given_t) :: nothing
-
-      call take(k, nothing)
-   end subroutine declare
-
-   subroutine take(k, given)
-      type(key_table_t), intent(inout) :: k
-      type(given_t), intent(inout) :: given
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(given_t) :: given
 
       call k%flag('motion', given%in_plane, 'vertical|plane', 'plane', &
                   'plane: along r and z, and turning (plane strain)')
@@ -68,48 +65,39 @@ contains
       call k%number('penalty', given%penalty, LEAST, UNBOUNDED, &
                     'traction of a unit of distance between a group and its place on the plate [kN/m3]', &
                     'motion=plane')
-   end subroutine take
+      if (k%lists .or. .not. given%in_plane) return
+      associate (plate => model%plates(number))
+         if (model%domain%axisymmetric) then
+            call raise(fault, EXIT_INPUT, place_of(plate)//'motion = ''plane'' turns the plate, which axial '// &
+                       'symmetry has no place for; set geometry = ''plane_strain'' in &scene, or '// &
+                       'motion = ''vertical''.')
+         else if (.not. (k%given('center') .and. k%given('inertia'))) then
+            call raise(fault, EXIT_INPUT, place_of(plate)//'a plate that moves in the plane needs '// &
+                       'center = r, z of its centre of mass [m] and inertia, its moment of inertia about it '// &
+                       '[Mg m2].')
+         else if (size(given%center) /= 2) then
+            call raise(fault, EXIT_INPUT, place_of(plate)//'center = r, z are two numbers.')
+         else
+            call free_in_plane(given, model, plate, fault)
+         end if
+      end associate
+   end subroutine build_group
 
-   !> Gives plates their motion in the plane, then supports and loads their rotation. Fault EXIT_INPUT: a motion that
-   !> axial symmetry has no place for, or that lacks centre or inertia; a rotation or moment of something else.
-   !> EXIT_GROUP: the name of its group is taken, or no edges could move with the plate.
-   subroutine build(self, tables, scene, model, there, fault)
+   !> Gives supports and loads their rotation; a body with other unknowns is all that a run sees. Fault EXIT_INPUT: a
+   !> rotation or moment of something else.
+   subroutine build(self, model, there, fault)
       class(plane_plates_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
+      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
-      type(given_t) :: given
       integer :: i
 
-      there = .false.   ! A body with other unknowns is all that a run sees.
-      do i = 1, size(tables)
-         given = given_t()
-         call take(tables(i), given)
-         if (.not. given%in_plane) cycle
-         associate (plate => model%plates(i))
-            if (model%domain%axisymmetric) then
-               call raise(fault, EXIT_INPUT, place_of(plate)//'motion = ''plane'' turns the plate, which axial '// &
-                          'symmetry has no place for; set geometry = ''plane_strain'' in &scene, or '// &
-                          'motion = ''vertical''.')
-            else if (.not. (tables(i)%given('center') .and. tables(i)%given('inertia'))) then
-               call raise(fault, EXIT_INPUT, place_of(plate)//'a plate that moves in the plane needs '// &
-                          'center = r, z of its centre of mass [m] and inertia, its moment of inertia about it '// &
-                          '[Mg m2].')
-            else if (size(given%center) /= 2) then
-               call raise(fault, EXIT_INPUT, place_of(plate)//'center = r, z are two numbers.')
-            else
-               call free_in_plane(given, model, plate, fault)
-            end if
-         end associate
-         if (fault%code /= 0) return
-      end do
+      there = .false.
       do i = 1, size(model%fixes)
-         call act_on_rotation(model%plates, .true., model%fixes(i)%acting_values_t, model%fixes(i)%group, fault)
+         call act_on_rotation(model%plates, .true., model%fixes(i)%acting_t, fault)
       end do
       do i = 1, size(model%loads)
-         call act_on_rotation(model%plates, .false., model%loads(i)%acting_values_t, model%loads(i)%group, fault)
+         call act_on_rotation(model%plates, .false., model%loads(i)%acting_t, fault)
       end do
    end subroutine build
 
@@ -163,11 +151,10 @@ contains
    end subroutine free_in_plane
 
    !> Lets a rotation or a moment act on the unknown of the plate that it names. Fault EXIT_INPUT: there is none.
-   subroutine act_on_rotation(plates, moves, one, group, fault)
+   subroutine act_on_rotation(plates, moves, one, fault)
       type(plate_t), intent(in) :: plates(:)
       logical, intent(in) :: moves   !< A rotation, else a moment.
-      type(acting_values_t), intent(inout) :: one
-      integer, intent(inout) :: group
+      type(acting_t), intent(inout) :: one
       type(fault_t), intent(inout) :: fault
       integer :: i
 
@@ -175,7 +162,7 @@ contains
       do i = 1, size(plates)
          if (plates(i)%name /= one%group_name .or. size(plates(i)%coordinates) < TURN) cycle
          associate (rotation => plates(i)%coordinates(TURN))
-            group = rotation%group
+            one%group = rotation%group
             one%value = merge(one%value*rotation%unit, one%value/rotation%unit, moves)
             one%value_slope = merge(one%value_slope*rotation%unit, one%value_slope/rotation%unit, moves)
          end associate

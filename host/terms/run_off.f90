@@ -13,7 +13,6 @@ module run_off
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: acts_in, place_of, stage_t, LOAD_RAIN
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use solution, only: solution_t
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -27,36 +26,34 @@ module run_off
    type, extends(scene_term_t) :: run_off_t
       real(wp), allocatable :: ponding(:)   !< (loads) Depth of water that stays on the surface, of rain [m].
    contains
-      procedure, nopass :: declare
-      procedure :: build, before_step, prescribe
+      procedure :: build_group, build, before_step, prescribe
    end type run_off_t
 contains
-   subroutine declare(k)
+   !> The pond of a load that is rain. Raises no fault.
+   subroutine build_group(self, k, number, model, fault)
+      class(run_off_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
       real(wp) :: ponding
 
       ponding = 0.0_wp
-      call take(k, ponding)
-   end subroutine declare
-
-   subroutine take(k, ponding)
-      type(key_table_t), intent(inout) :: k
-      real(wp), intent(inout) :: ponding
-
       call k%number('ponding', ponding, 0.0_wp, 1000.0_wp, &
                     'rain: depth of water that the surface holds before the rest runs off [m]', 'kind=rain')
-   end subroutine take
+      if (k%lists) return
+      if (.not. allocated(self%ponding)) allocate (self%ponding(size(model%loads)), source=0.0_wp)
+      if (model%loads(number)%kind == LOAD_RAIN) self%ponding(number) = ponding
+   end subroutine build_group
 
    !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
    !> pond without weight.
-   subroutine build(self, tables, scene, model, there, fault)
+   subroutine build(self, model, there, fault)
       class(run_off_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
+      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
-      integer :: i, k
+      integer :: i
 
       there = any(model%fixes%limits) .or. any(model%loads%kind == LOAD_RAIN)
       do i = 1, size(model%fixes)
@@ -70,12 +67,9 @@ contains
             end if
          end associate
       end do
-      allocate (self%ponding(size(model%loads)), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
             if (load%kind /= LOAD_RAIN .or. fault%code /= 0) cycle
-            k = findloc(tables%group%file == load%file .and. tables%group%line == load%line, .true., dim=1)
-            call take(tables(k), self%ponding(i))
             call check_rain(model, load, self%ponding(i), fault)
          end associate
       end do

@@ -4,33 +4,32 @@ module scene_term
    use faults, only: fault_t
    use key_table, only: key_table_t
    use model_types, only: model_t, term_t
-   use scene_types, only: scene_t
    implicit none (type, external)
    private
    public :: scene_term_t
 
+   !> Procedures that a term leaves out do nothing.
    type, abstract, extends(term_t) :: scene_term_t
    contains
-      procedure, nopass :: declare
-      procedure(build_i), deferred :: build
+      procedure :: build_group, build
    end type scene_term_t
-
-   abstract interface
-      !> Takes what the term needs of a scene, and of a model whose mesh, regions and boundaries are known, and tells
-      !> the model what it adds: actions, ground. Faults: what the scene asks of the term and cannot be.
-      subroutine build_i(self, tables, scene, model, there, fault)
-         import :: scene_term_t, key_table_t, scene_t, model_t, fault_t
-         class(scene_term_t), intent(inout) :: self
-         type(key_table_t), intent(inout) :: tables(:)   !< Every group of the scene that the term's keys stand in.
-         type(scene_t), intent(in) :: scene
-         type(model_t), intent(inout) :: model
-         logical, intent(out) :: there   !< Whether the scene has it.
-         type(fault_t), intent(inout) :: fault
-      end subroutine build_i
-   end interface
 contains
-   !> Lists the keys of the term in the group of a table.
-   subroutine declare(k)
+   !> Declares the keys that the term has in a group, and takes what it needs of them, and of a model whose mesh,
+   !> regions and boundaries are known; with a table that only lists it ends after the keys. Tells the model what it
+   !> adds: actions, ground. Faults: what the scene asks of the term and cannot be.
+   subroutine build_group(self, k, number, model, fault)
+      class(scene_term_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
-   end subroutine declare
+      integer, intent(in) :: number   !< Of the group among those of its name.
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+   end subroutine build_group
+
+   !> After the groups. Faults: as of build_group.
+   subroutine build(self, model, there, fault)
+      class(scene_term_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(inout) :: there   !< Whether the scene has the term; before: a group that its keys may stand in.
+      type(fault_t), intent(inout) :: fault
+   end subroutine build
 end module scene_term

@@ -15,7 +15,6 @@ module staging
    use porous_domain, only: model_state_t, copy_state
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    use solution, only: solution_t
    use texts, only: whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS
@@ -27,60 +26,57 @@ module staging
       real(wp), allocatable :: held_up(:)   !< (unknowns) Forces at the start of what leaves with this stage [kN].
       logical, allocatable :: absent(:)     !< (unknowns) No present element has them.
    contains
-      procedure, nopass :: declare
-      procedure :: build, begin_stage, before_step, prescribe
+      procedure :: build_group, build, begin_stage, before_step, prescribe
    end type staging_t
 contains
-   subroutine declare(k)
-      type(key_table_t), intent(inout) :: k
-      character(LENGTH), allocatable :: stages(:)
-
-      call take(k, stages)
-   end subroutine declare
-
-   subroutine take(k, stages)
-      type(key_table_t), intent(inout) :: k
-      character(LENGTH), allocatable, intent(out) :: stages(:)
-
-      call k%texts('stages', stages, 'stages in which it is part of the ground; default: all')
-   end subroutine take
-
-   !> Which elements the stages have. Fault EXIT_GROUP: a stage that nobody defines; EXIT_INPUT: ground that is not
-   !> there from the start with a stress of its own, or the flow of a start that lacks it; a stage without ground.
-   subroutine build(self, tables, scene, model, there, fault)
+   !> Which elements of a region the stages have. Raises no fault.
+   subroutine build_group(self, k, number, model, fault)
       class(staging_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
+      type(key_table_t), intent(inout) :: k
+      integer, intent(in) :: number
       type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
       type(fault_t), intent(inout) :: fault
       character(LENGTH), allocatable :: stages(:)
-      logical :: has(size(scene%regions), size(model%stages))
-      integer :: i, s
+      integer :: s
 
-      there = .false.
-      do i = 1, size(tables)
-         call take(tables(i), stages)
-         there = there .or. size(stages) > 0
-         has(i, :) = [(acts_in(stages, model%stages(s)%name), s=1, size(has, 2))]
+      call k%texts('stages', stages, 'stages in which it is part of the ground; default: all')
+      if (k%lists) return
+      if (size(stages) == 0) return
+      if (.not. allocated(model%ground)) &
+         allocate (model%ground(size(model%domain%region_of), size(model%stages)), source=.true.)
+      do s = 1, size(model%stages)
+         if (.not. acts_in(stages, model%stages(s)%name)) &
+            model%ground(:, s) = model%ground(:, s) .and. model%domain%region_of /= number
       end do
+   end subroutine build_group
+
+   !> Fault EXIT_INPUT: ground that is not there from the start with a stress of its own, or the flow of a start that
+   !> lacks it; a stage without ground.
+   subroutine build(self, model, there, fault)
+      class(staging_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      logical, intent(inout) :: there
+      type(fault_t), intent(inout) :: fault
+      integer :: s
+
+      there = allocated(model%ground)
       if (.not. there) return
       if (model%subtract_flow) then
-         call raise(fault, EXIT_INPUT, trim(scene%file)//': initial_flow = ''subtract'' of &scene keeps the flow '// &
-                    'of the ground at the start, but regions join or leave (stages of &region); leave one of them out.')
+         call raise(fault, EXIT_INPUT, trim(model%origin%file)//': initial_flow = ''subtract'' of &scene keeps the '// &
+                    'flow of the ground at the start, but regions join or leave (stages of &region); leave one '// &
+                    'of them out.')
          return
       end if
-      model%ground = has(model%domain%region_of, :)
       do s = 1, size(model%stages)
          if (.not. any(nodes_of_ground(model, s)) .and. fault%code == 0) call raise(fault, EXIT_INPUT, &
-            trim(scene%file)//': no &region is part of the ground in stage '''//trim(model%stages(s)%name)//'''.')
+            trim(model%origin%file)//': no &region is part of the ground in stage '''// &
+            trim(model%stages(s)%name)//'''.')
       end do
-      if (fault%code == 0) call check_start(scene, model, fault)
+      if (fault%code == 0) call check_start(model, fault)
    end subroutine build
 
    !> New ground comes without stress.
-   subroutine check_start(scene, model, fault)
-      type(scene_t), intent(in) :: scene
+   subroutine check_start(model, fault)
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
       integer :: i, k
@@ -92,7 +88,7 @@ contains
                if (model%ground(k, 1)) cycle
                if (.not. any(model%domain%mesh%groups(initial%group)%elements == k)) cycle
                call raise(fault, EXIT_INPUT, place_of(initial)//'this stress covers the &region with group '''// &
-                          trim(scene%regions(model%domain%region_of(k))%group_name)//''', which joins in a later '// &
+                          trim(model%regions(model%domain%region_of(k))%group_name)//''', which joins in a later '// &
                           'stage and comes without stress; name the group of the ground that is there from the start.')
                return
             end do

@@ -11,7 +11,7 @@ module strength
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use texts, only: short, LENGTH
    implicit none (type, external)
@@ -32,78 +32,58 @@ module strength
    type, extends(scene_term_t) :: strength_t
       type(change_t), allocatable :: changes(:)
    contains
-      procedure, nopass :: declare
-      procedure :: build, begin_stage, before_step, remark
+      procedure :: build_group, begin_stage, before_step, remark
    end type strength_t
 contains
-   subroutine declare(k)
+   !> Places of what a group names, and whether the laws allow what its history asks. Fault EXIT_GROUP: a material or
+   !> history that is not defined; EXIT_INPUT: a parameter that cannot change, two histories of one, a factor that is
+   !> not 1 at the start, a value that the law refuses.
+   subroutine build_group(self, k, number, model, fault)
+      class(strength_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
-      type(change_t) :: nothing
-
-      call take(k, nothing)
-   end subroutine declare
-
-   subroutine take(k, change)
-      type(key_table_t), intent(inout) :: k
-      type(change_t), intent(inout) :: change
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(change_t) :: change
+      integer :: i
 
       call k%text('material', change%material_name, 'name of the material whose strength changes with time', REQUIRED)
       call k%text('parameter', change%parameter_name, &
                   'what changes: M_c of a &mud; of a &umat props(1), props(2), ...', REQUIRED)
       call k%text('history', change%amplitude_name, 'factor on the parameter, 1 at the start', REQUIRED, &
                   refers='history')
-   end subroutine take
-
-   !> Places of what the groups &strength name, and whether the laws allow what their histories ask. Fault EXIT_GROUP: a
-   !> material or history that is not defined; EXIT_INPUT: a parameter that cannot change, two histories of one, a
-   !> factor that is not 1 at the start, a value that the law refuses.
-   subroutine build(self, tables, scene, model, there, fault)
-      class(strength_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
-      type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
-      type(fault_t), intent(inout) :: fault
-      integer :: i, k
-
-      there = size(tables) > 0
-      allocate (self%changes(size(tables)))
-      do i = 1, size(tables)
-         associate (s => self%changes(i))
-            s%scene_item_t = item_of(tables(i)%group)
-            call take(tables(i), s)
-            s%amplitude = defined_name('history', s%amplitude_name, model%amplitudes%name, place_of(s), fault)
-            if (fault%code == 0) k = defined_name('material', s%material_name, scene%materials%name, place_of(s), fault)
-            if (fault%code /= 0) return
-            call check_history(model, self%changes, i, fault)
-            s%in_region = scene%regions%material_name == s%material_name
-            do k = 1, size(s%in_region)
-               if (fault%code /= 0) return
-               if (s%in_region(k)) call check_law(model, s, model%domain%regions(k)%law, fault)
-            end do
-         end associate
+      if (k%lists) return
+      change%scene_item_t = item_of(k%group)
+      change%amplitude = defined_name('history', change%amplitude_name, model%amplitudes%name, place_of(change), fault)
+      if (fault%code == 0) i = defined_name('material', change%material_name, model%materials%name, place_of(change), &
+                                            fault)
+      if (fault%code /= 0) return
+      if (.not. allocated(self%changes)) allocate (self%changes(0))
+      call check_history(model, self%changes, change, fault)
+      change%in_region = model%regions%material_name == change%material_name
+      do i = 1, size(change%in_region)
+         if (fault%code /= 0) return
+         if (change%in_region(i)) call check_law(model, change, model%domain%regions(i)%law, fault)
       end do
-   end subroutine build
+      self%changes = [self%changes, change]
+   end subroutine build_group
 
    !> A parameter follows one history, and the ground begins with the parameter as its material has it.
-   subroutine check_history(model, changes, number, fault)
+   subroutine check_history(model, before, s, fault)
       type(model_t), intent(in) :: model
-      type(change_t), intent(in) :: changes(:)
-      integer, intent(in) :: number   !< Of the group.
+      type(change_t), intent(in) :: before(:), s   !< The others, and this one.
       type(fault_t), intent(inout) :: fault
       real(wp) :: first
 
-      associate (s => changes(number), before => changes(:number - 1))
-         first = factor_at(model, s%amplitude, START)
-         if (any(before%material_name == s%material_name .and. before%parameter_name == s%parameter_name)) then
-            call raise(fault, EXIT_INPUT, place_of(s)//trim(s%parameter_name)//' of '''//trim(s%material_name)// &
-                       ''' follows a history already; one &strength names it once.')
-         else if (abs(first - 1) > SAME) then
-            call raise(fault, EXIT_INPUT, place_of(s)//'history '''//trim(s%amplitude_name)//''' is '//short(first)// &
-                       ' at the start of the run; it must be 1 there: the ground begins with the parameter of its '// &
-                       'material.')
-         end if
-      end associate
+      first = factor_at(model, s%amplitude, START)
+      if (any(before%material_name == s%material_name .and. before%parameter_name == s%parameter_name)) then
+         call raise(fault, EXIT_INPUT, place_of(s)//trim(s%parameter_name)//' of '''//trim(s%material_name)// &
+                    ''' follows a history already; one &strength names it once.')
+      else if (abs(first - 1) > SAME) then
+         call raise(fault, EXIT_INPUT, place_of(s)//'history '''//trim(s%amplitude_name)//''' is '//short(first)// &
+                    ' at the start of the run; it must be 1 there: the ground begins with the parameter of its '// &
+                    'material.')
+      end if
    end subroutine check_history
 
    !> Whether a law has the parameter, and takes the smallest and the largest value of its history.

@@ -71,14 +71,16 @@ contains
    end function with_own_groups
 
    !> Lists the keys that terms have in the group of a table.
-   subroutine declare_keys(k)
+   subroutine declare_keys(k, nothing, fault)
       type(key_table_t), intent(inout) :: k
+      type(model_t), intent(inout) :: nothing
+      type(fault_t), intent(inout) :: fault
       type(registered_t), allocatable :: list(:)
       integer :: i
 
       call list_terms(list)
       do i = 1, size(list)
-         if (list(i)%group == k%group%name) call list(i)%term%declare(k)
+         if (list(i)%group == k%group%name) call list(i)%term%build_group(k, 0, nothing, fault)
       end do
    end subroutine declare_keys
 
@@ -103,17 +105,18 @@ contains
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
-      type(key_table_t), allocatable :: tables(:)
+      type(key_table_t) :: table
       type(term_box_t) :: box
       logical :: there
       integer :: i
 
       allocate (groups, source=groups_named(scene, trim(registered%group)))
-      allocate (tables(size(groups)))
       do i = 1, size(groups)
-         tables(i)%group = groups(i)
+         table%group = groups(i)
+         if (fault%code == 0) call registered%term%build_group(table, i, model, fault)
       end do
-      call registered%term%build(tables, scene, model, there, fault)
+      there = size(groups) > 0
+      if (fault%code == 0) call registered%term%build(model, there, fault)
       if (fault%code /= 0 .or. .not. there) return
       allocate (box%term, source=registered%term)
       model%terms = [model%terms, box]

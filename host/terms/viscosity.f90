@@ -8,7 +8,6 @@ module viscosity
    use kinds, only: wp
    use model_types, only: model_t
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t
    implicit none (type, external)
    private
    public :: viscosity_t
@@ -19,43 +18,32 @@ module viscosity
 
    type, extends(scene_term_t) :: viscosity_t
    contains
-      procedure, nopass :: declare
-      procedure :: build
+      procedure :: build_group, build
    end type viscosity_t
 contains
-   subroutine declare(k)
+   !> What the points of a region have against the rate of strain. Raises no fault.
+   subroutine build_group(self, k, number, model, fault)
+      class(viscosity_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
       real(wp) :: eta
-
-      call take(k, eta)
-   end subroutine declare
-
-   subroutine take(k, eta)
-      type(key_table_t), intent(inout) :: k
-      real(wp), intent(out) :: eta
 
       eta = 0.0_wp
       call k%number('viscosity', eta, 0.0_wp, UNBOUNDED, &
                     'shear viscosity beside the skeleton, not in static stages [kPa s]', ':time')
-   end subroutine take
+      if (k%lists) return
+      if (eta > 0.0_wp) model%domain%regions(number)%against_rate = eta*DEVIATOR
+   end subroutine build_group
 
-   !> What the points of regions have against the rate of strain. Raises no fault.
-   subroutine build(self, tables, scene, model, there, fault)
+   !> Regions with a stress of their own are all that a run sees. Raises no fault.
+   subroutine build(self, model, there, fault)
       class(viscosity_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
+      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
-      real(wp) :: eta
-      integer :: i
 
       there = .false.
-      do i = 1, size(tables)
-         call take(tables(i), eta)
-         if (.not. eta > 0.0_wp) cycle
-         there = .true.
-         model%domain%regions(i)%against_rate = eta*DEVIATOR
-      end do
    end subroutine build
 end module viscosity

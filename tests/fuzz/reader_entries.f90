@@ -6,6 +6,8 @@ module reader_entries
    use faults, only: fault_t
    use gmsh_reader, only: read_gmsh
    use kinds, only: wp
+   use model_builder, only: build_model
+   use model_types, only: model_t
    use number_pairs, only: read_pairs
    use scene_reader, only: read_scene
    use scene_types, only: scene_t
@@ -37,9 +39,11 @@ contains
       integer(c_int), value :: n
       character(kind=c_char), intent(in) :: path(n)
       type(scene_t) :: scene
+      type(model_t) :: model
       type(fault_t) :: fault
 
       call read_scene(text_of(path, n), scene, fault)
+      if (fault%code == 0) call build_model(scene, model, fault)
       fuzz_scene = outcome(fault)
    end function fuzz_scene
 

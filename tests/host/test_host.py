@@ -256,7 +256,7 @@ def test_idle_threads_wait_asleep():
 def test_template_in_groups():
     # The template names every key of the code and is refused for nothing but its question marks.
     template = subprocess.run([host, "--template"], capture_output=True, text=True).stdout
-    code = (root / "host/setup/scene_keys.f90").read_text()
+    code = "".join(file.read_text() for file in (root / "host/model").glob("*_builder.f90"))
     for name in set(re.findall(r"call k%\w+\('(\w+)'", code)):
         lines, calls = (len(re.findall(pattern, text, re.MULTILINE))
                         for pattern, text in ((rf"^[ !]+{name} = ", template), (rf"call k%\w+\('{name}'", code)))

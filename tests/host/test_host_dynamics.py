@@ -89,6 +89,12 @@ def test_the_base_moves_by_the_double_integral_rho_inf():
         check(f"refused: {name}", done.returncode in (2, 11) and words in done.stderr, done.stderr)
 
 
+def test_of_two_supports_of_a_node_the_later_one_counts_also_after_an_acceleration():
+    shaken = column() + TIED + MOVED + "&history name = 'h' times = 0, 0.1 values = 0, 1 /\n"
+    held, _ = run(shaken + "&fix group = 'bottom' field = 'u_r' /\n" + stage("a", 0.2, 0.02), "held")
+    check("the base stays where the later one holds it", not any(held["base.u_r"]), held["base.u_r"])
+
+
 def test_what_the_balance_of_a_shaken_column_leaves_open_is_of_second():
     # Works of one step are those of the same moment: what a moving base does against reactions of another one would be
     # of first order in the step, and energy out of nothing or into nothing.

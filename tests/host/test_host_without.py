@@ -129,6 +129,12 @@ def test_what_cannot_be_without_is_refused_with_the_reason():
     done = start(heavy, "weightless")
     check("without gravity, but geostatic",
           done.returncode == 2 and "gravity" in done.stderr and "geostatic" in done.stderr, done.stderr)
+    wet = COLUMN.format(keys="without = 'gravity' gravity = 9.81").replace("'u'", "'u-p_w'").replace(
+        "void_ratio = 0.8", "void_ratio = 0.8 permeability = 'k'") + "&permeability name = 'k' intrinsic = 1e-10 /\n"
+    check("without gravity", start(wet, "dry", "--check").returncode == 0)
+    done = start(wet + "&initial water_table = 0 /\n", "table", "--check")
+    check("without gravity, but the pressures of a water table",
+          done.returncode == 2 and "a water table" in done.stderr, done.stderr)
     both = WHOLE.replace("gravity = 9.81", "without = 'p_c' gravity = 9.81").replace(
         "group = 'top' field = 'p_w' value = -30", "group = 'top' field = 'p_a' value = 0")
     done = start(both, "air")

@@ -12,7 +12,7 @@ module ground_spring
    use texts, only: LENGTH
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
-   use scene_types, only: scene_t, item_of
+   use scene_types, only: item_of
    use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -29,54 +29,33 @@ module ground_spring
    type, extends(scene_term_t) :: ground_spring_t
       type(spring_t), allocatable :: springs(:)
    contains
-      procedure, nopass :: declare
-      procedure :: build, begin_run, before_step
+      procedure :: build_group, begin_run, before_step
    end type ground_spring_t
 contains
-   subroutine declare(k)
+   !> Fault EXIT_GROUP: a group that is not defined.
+   subroutine build_group(self, k, number, model, fault)
+      class(ground_spring_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
-      type(spring_t) :: nothing
+      integer, intent(in) :: number
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      type(spring_t) :: spring
       character(LENGTH) :: boundary
-
-      call take(k, nothing, boundary)
-   end subroutine declare
-
-   subroutine take(k, spring, boundary)
-      type(key_table_t), intent(inout) :: k
-      type(spring_t), intent(inout) :: spring
-      character(LENGTH), intent(out) :: boundary
 
       boundary = ''
       call k%text('group', boundary, 'nodes that the springs hold', REQUIRED)
       call k%number('stiffness', spring%stiffness, 0.0_wp, UNBOUNDED, 'force on a node over its displacement [kN/m]', &
                     REQUIRED)
       call k%texts('stages', spring%stages, 'names of stages; default: all')
-   end subroutine take
-
-   !> Fault EXIT_GROUP: a group or stage that is not defined.
-   subroutine build(self, tables, scene, model, there, fault)
-      class(ground_spring_t), intent(inout) :: self
-      type(key_table_t), intent(inout) :: tables(:)
-      type(scene_t), intent(in) :: scene
-      type(model_t), intent(inout) :: model
-      logical, intent(out) :: there
-      type(fault_t), intent(inout) :: fault
-      character(LENGTH) :: boundary
-      integer :: i
-
-      there = size(tables) > 0
-      allocate (self%springs(size(tables)))
-      do i = 1, size(tables)
-         associate (spring => self%springs(i))
-            spring%scene_item_t = item_of(tables(i)%group)
-            spring%what = '&'//NAME
-            call take(tables(i), spring, boundary)
-            spring%group = mesh_group(model%domain%mesh, boundary, place_of(spring), fault)
-            if (fault%code /= 0) return
-            model%actions = [model%actions, spring%action_t]
-         end associate
-      end do
-   end subroutine build
+      if (k%lists) return
+      spring%scene_item_t = item_of(k%group)
+      spring%what = '&'//NAME
+      spring%group = mesh_group(model%domain%mesh, boundary, place_of(spring), fault)
+      if (fault%code /= 0) return
+      model%actions = [model%actions, spring%action_t]
+      if (.not. allocated(self%springs)) allocate (self%springs(0))
+      self%springs = [self%springs, spring]
+   end subroutine build_group
 
    !> An entry on the diagonal for every displacement. Raises no fault.
    subroutine begin_run(self, model, solution, fault)
