@@ -374,6 +374,12 @@ def test_ground_that_swings_more_than_twenty_times_is_told_once():
     # With 5 % of damping swings have fallen below a quarter of the largest displacement after ten.
     check("nor one that dies away", told_of_cycles(SWINGING.replace("rho_s = 2.65", "rho_s = 2.65 damping = 30")) == [])
     check("nor elastic ground", told_of_cycles(SWINGING.replace("material = 'sand'", "material = 'rock'")) == [])
+    machine = """&plate name = 'mass' r = 0, 0.5 z = 1 mass = 2.2 force = -33 /
+&buffer upper = 'mass' lower = 'block' stiffness = 1.8e4 tension = 'yes' /
+&fix group = 'mass' field = 'u_z' stages = 'rest' /
+"""
+    on_spring = SWINGING.replace("&load group = 'top' kind = 'pressure' value = 5 stages = 'free' /\n", machine)
+    check("a mass that is let go on a buffer is", len(told_of_cycles(on_spring)) == 1, on_spring)
 
 
 def test_turns_are_counted_over_a_restart():
