@@ -23,6 +23,7 @@ module mud_kernel
    private
    public :: report_t, output_t, kernel_begin, kernel_point, kernel_tangent, &
       rotate_statev, failed_report, copy_statev, TANGENT_FROM_PROPS, ON_STRESS_RATIO
+   public :: read_state, write_output, report_of, from_umat_strain
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
    integer, parameter :: ON_STRESS_RATIO = 7      !< Index of a status on stress: the ratio q/p', no component.
