@@ -129,7 +129,8 @@ contains
             case (BEGIN)
                call begin_point(material(k(i))%par, arrays, j(i), is_total(given%tangent), raised, report(i))
             case (UPDATE)
-               if (.not. done(i)) call update_point(material(k(i))%par, arrays, j(i), given%tangent, output(i), report(i))
+               if (.not. done(i)) call update_point(material(k(i))%par, arrays, j(i), given%tangent, output(i), &
+                                                    report(i))
                if (report(i)%status == MUD_OK) call give_results(arrays, j(i), output(i))
             case default
                call retain_point(material(k(i))%par, arrays, j(i), report(i))
@@ -300,7 +301,7 @@ contains
       end do
    end subroutine update_together
 
-   !> What the arrays ask of point j.
+   !> An increment of point j as the arrays have it.
    type(given_t) function increment_of(arrays, j) result(given)
       type(arrays_t), intent(in) :: arrays
       integer, intent(in) :: j

@@ -350,6 +350,7 @@ contains
       status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(statev_size(options), wp), huge(1.0_wp))
    end function wrong_nstatv
 
+   !> Report of an update that so many counters count.
    pure function report_of(status, counters, reached) result(report)
       type(mud_status_t), intent(in) :: status
       type(counters_t), intent(in) :: counters

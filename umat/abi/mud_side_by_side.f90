@@ -51,7 +51,8 @@ contains
          starts(i)%d_strain = given(i)%d_strain
          starts(i)%d_suction = suction_change(given(i)%statev(S_SUCTION), given(i)%suction)
       end do
-      done = mud_lane_points(c_loc(par), c_loc(starts), size(given), kind_of(options), c_loc(outputs), c_loc(reports)) /= 0
+      done = mud_lane_points(c_loc(par), c_loc(starts), size(given), kind_of(options), c_loc(outputs), &
+                             c_loc(reports)) /= 0
       done = done .and. reports%status == MUD_OK
       if (.not. is_total(options)) return
       do i = 1, size(given)

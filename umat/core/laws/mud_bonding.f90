@@ -52,7 +52,7 @@ contains
       if (self%bonds) bond = bonding_at(self, saturation(self%retention_t, p_c, e), p_c)
    end function bonding
 
-   !> The same where it acts, at a suction [kPa] and the saturation that belongs to it.
+   !> Bonding where it acts, at a suction [kPa] and the saturation that belongs to it.
    pure function bonding_at(self, sat, p_c) result(bond)
       type(suction_law_t), intent(in) :: self
       type(saturation_t), intent(in) :: sat

@@ -162,7 +162,7 @@ contains
       end if
    end function saturation
 
-   !> The same without hysteresis.
+   !> Saturation without hysteresis.
    pure function curve_saturation(self, p_c, e) result(sat)
       type(retention_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e

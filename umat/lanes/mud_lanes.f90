@@ -10,15 +10,16 @@ module mud_lanes
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
    use mud_lane_rates, only: WIDTH, lanes_t, take_increment, ask, give_rate
-   use mud_options, only: has_numbers
+   use mud_mechanism, only: begin_mechanism
    use mud_order, only: look_for_stiffness
    use mud_params, only: params_t
    use mud_phases, only: cut_t, list_cuts, MAX_CUTS
    use mud_point, only: update_point, begin_update, end_update, give_tangent, TANGENT_CONSISTENT
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
+   use mud_registry, only: NSTATV_BASE
    use mud_retention, only: course_t
-   use mud_state, only: counters_t
+   use mud_state, only: counters_t, statev_size
    use mud_status, only: MUD_OK
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, plan_attempt, judge, end_substep, end_phase
@@ -37,7 +38,7 @@ module mud_lanes
       end subroutine mud_find_rates
    end interface
 
-   !> What a point takes along beside its integration.
+   !> A point on its way, beside its integration.
    type :: point_t
       logical :: together      !< It is one of those that go side by side ...
       logical :: tries         !< ... and its attempt is made side by side.
@@ -55,7 +56,7 @@ contains
       type(params_t), intent(in), target :: par
 
       fits_lanes = par%isotropic .and. par%floored .and. min(par%cap_d, par%cap_h) > 0.0_wp .and. &
-                   .not. (has_numbers(par) .or. par%hysteresis)
+                   statev_size(par%options_t) <= NSTATV_BASE   ! no option adds a number to the state
    end function fits_lanes
 
    !> update_point for each of n points.
@@ -135,10 +136,11 @@ contains
 
       y = 0.0_wp
       do j = 1, n
-         of(j)%asks = of(j)%together .and. .not. (it(j)%known .or. it(j)%state%open .or. it(j)%inc%inside .or. &
-                                                  it(j)%trial%drifts)
-         if (of(j)%together) call take_increment(j, it(j)%inc, q)
-         if (of(j)%asks .and. par%remembers) it(j)%inc%rests = it(j)%state%margin < 0.0_wp
+         of(j)%asks = .false.
+         if (.not. of(j)%together) cycle
+         call begin_mechanism(par, it(j)%state, it(j)%inc, it(j)%trial, it(j)%known)
+         call take_increment(j, it(j)%inc, q)
+         of(j)%asks = .not. (it(j)%known .or. it(j)%state%open .or. it(j)%inc%inside .or. it(j)%trial%drifts)
          if (.not. of(j)%asks) cycle
          y(1:6) = it(j)%state%sigma
          y(Y_Z:Y_Z_END) = it(j)%state%z

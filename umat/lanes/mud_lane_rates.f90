@@ -66,7 +66,7 @@ contains
    pure subroutine ask(par, j, inc, time, y, r_in, q, near)
       type(params_t), intent(in) :: par
       integer, intent(in) :: j
-      type(increment_t), intent(in) :: inc   !< that of take_increment, perhaps without its turn
+      type(increment_t), intent(in) :: inc   !< As take_increment had it, perhaps without its turn.
       real(wp), intent(in) :: time, y(NY), r_in(6)
       type(lanes_t), intent(inout) :: q
       type(rate_t), intent(in), optional :: near
@@ -82,17 +82,18 @@ contains
       q%n(j, :) = 0.0_wp
       if (.not. present(near)) return
       q%known(j) = number(near%loading .and. .not. near%several)
-      q%active(j) = number(near%iso_active .and. .not. par%remembers)
+      q%active(j) = number(near%iso_active .and. par%guesses_mechanism)
       q%n(j, :) = near%n
    end subroutine ask
 
+   !> A mask [-]: 1 where true.
    pure elemental real(wp) function number(true)
       logical, intent(in) :: true
 
       number = merge(1.0_wp, 0.0_wp, true)
    end function number
 
-   !> What the direction equation needs of a rate.
+   !> A rate with all that the direction equation reads.
    pure subroutine load_state(par, j, q, w)
       type(params_t), intent(in) :: par
       integer, intent(in) :: j
@@ -186,7 +187,7 @@ contains
       w%d_own = 0.0_wp
       w%iso_drive = q%first_drive(j)
       w%swell = q%swell(j)
-      if (with_mechanism .and. .not. par%remembers) then
+      if (with_mechanism .and. par%guesses_mechanism) then
          ! the sign of the drive without the mechanism is not known for certain: solved in its order
          strain = q%strain(j, :)
          known = w%iso_drive > 0.0_wp

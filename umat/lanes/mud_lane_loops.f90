@@ -39,6 +39,7 @@ contains
       type(params_t), intent(in) :: par
       type(lanes_t), intent(inout) :: q
       type(suction_law_t) :: law
+      real(wp) :: known(WIDTH), n(WIDTH, 6), again(WIDTH)
       integer :: j
 
       !$omp simd
@@ -59,11 +60,19 @@ contains
       do j = 1, WIDTH
          call find_state(par, j, q)
       end do
+      known = q%known
+      n = q%n
       call solve(par, q)
       q%first_drive = q%drive
       q%swell = max(-q%l*q%d, 0.0_wp)
-      if (any(q%drive > 0.0_wp .and. q%active < 0.5_wp)) then
-         q%active = number(q%drive > 0.0_wp)
+      again = number(q%drive > 0.0_wp .and. q%active < 0.5_wp)
+      if (any(again > 0.5_wp)) then
+         q%active = max(q%active, again)
+         ! the others find again what they found, from where they began: no lane depends on those beside it
+         q%known = merge(1.0_wp, known, again > 0.5_wp)
+         do j = 1, 6
+            q%n(:, j) = merge(q%n(:, j), n(:, j), again > 0.5_wp)
+         end do
          call solve(par, q)
          q%fails = max(q%fails, number(q%active > 0.5_wp .and. q%drive < 0.0_wp))
       end if
@@ -136,7 +145,7 @@ contains
       q%d_sigma(j, :) = merge(w%d_sigma, q%d_sigma(j, :), q%turns(j) > 0.5_wp)
    end subroutine add_rest
 
-   !> What depends on the state alone.
+   !> All that depends on the state alone.
    pure subroutine find_state(par, j, q)
       type(params_t), intent(in) :: par
       integer, intent(in) :: j
