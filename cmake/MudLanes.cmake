@@ -9,10 +9,10 @@
 function(mud_add_lanes sources core)
    set(${sources} "" PARENT_SCOPE)
    if(NOT (CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND
-           CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND CMAKE_C_COMPILER_ID STREQUAL "GNU"))
+           CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND CMAKE_C_COMPILER_ID STREQUAL "GNU" AND
+           CMAKE_C_COMPILER_VERSION VERSION_GREATER_EQUAL 12))
       return()
    endif()
-   set(lanes lanes/mud_lane_rates.f90)
    list(FIND core core/integration/mud_increment.f90 last)
    math(EXPR last "${last} + 1")
    list(SUBLIST core 0 ${last} below)
@@ -21,10 +21,12 @@ function(mud_add_lanes sources core)
       -finline-limit=20000 --param=max-inline-insns-auto=2000 --param=max-inline-insns-single=4000
       --param=early-inlining-insns=400 --param=large-function-growth=10000 --param=large-function-insns=100000
       --param=inline-unit-growth=1000 --param=max-early-inliner-iterations=10 --param=large-stack-frame-growth=100000)
-   mud_copy_of_core(wide "${below};${lanes};lanes/mud_lane_loops.f90" "${loops}")
-   mud_copy_of_core(lane "${core};${lanes};lanes/mud_lanes.f90;abi/mud_kernel.f90;lanes/mud_lane_kernel.f90"
-      "-ffp-contract=off")
-   set(${sources} ${CMAKE_CURRENT_BINARY_DIR}/mud_wide.F90 ${CMAKE_CURRENT_BINARY_DIR}/mud_lane.F90 lanes/mud_lane_choice.c PARENT_SCOPE)
+   mud_copy_of_core(wide "${below};lanes/mud_lane_rates.f90;lanes/mud_lane_loops.f90" "${loops}")
+   # Rounding of what is scalar stays that of the other build.
+   mud_copy_of_core(lane
+      "${core};lanes/mud_lane_rates.f90;lanes/mud_lanes.f90;abi/mud_kernel.f90;lanes/mud_lane_kernel.f90" "-ffp-contract=off")
+   set(${sources} ${CMAKE_CURRENT_BINARY_DIR}/mud_wide.F90 ${CMAKE_CURRENT_BINARY_DIR}/mud_lane.F90
+      lanes/mud_lane_choice.c PARENT_SCOPE)
 endfunction()
 
 # mud_copy_of_core(NAME PARTS OPTIONS)
