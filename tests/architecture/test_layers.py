@@ -137,7 +137,8 @@ def of_the_contract(suites):
 AS_WRITTEN = {"scene_types", "namelists", "key_table", "key_schema"}   # What a run does not know.
 
 
-TANGENT, USERS = "umat/core/tangent", {"mud_point", "mud_lanes"}   # The loops of an update; beside them whoever passes blocks on.
+# The loops of an update use the tangent; beside them whoever passes blocks on.
+TANGENT, USERS = "umat/core/tangent", {"mud_point", "mud_lanes"}
 BLOCKS = {"mud_blocks": {"mud_kernel", "mud_lane_kernel"}}
 
 

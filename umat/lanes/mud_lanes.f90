@@ -29,7 +29,7 @@ module mud_lanes
    use mud_vector, only: NY, Y_Z, Y_Z_END
    implicit none (type, external)
    private
-   public :: WIDTH, fits_lanes, update_side_by_side
+   public :: fits_lanes, update_side_by_side
 
    interface
       subroutine mud_find_rates(material, lanes) bind(c, name='mud_find_rates')
