@@ -13,6 +13,7 @@ GROUPS = {
     "umat/core": (("umat/core/base", "umat/core/laws", "umat/core/options", "umat/core/rates", "umat/core/integration",
                    "umat/core/tangent", "umat/core"), ()),
     "umat/abi": (("umat/abi",), ("umat/core",)),
+    "umat/lanes": (("umat/lanes",), ("umat/core", "umat/abi")),
     "umat/doors": (("umat/doors",), ("umat/include",)),
     "umat/tables": (("umat/tables",), ("umat/core",)),
     "umat/include": (("umat/include",), ()),
@@ -136,8 +137,9 @@ def of_the_contract(suites):
 AS_WRITTEN = {"scene_types", "namelists", "key_table", "key_schema"}   # What a run does not know.
 
 
-TANGENT, USERS = "umat/core/tangent", {"mud_point"}   # The loops of an update; beside them whoever passes blocks on.
-BLOCKS = {"mud_blocks": {"mud_kernel"}}
+# The loops of an update use the tangent; beside them whoever passes blocks on.
+TANGENT, USERS = "umat/core/tangent", {"mud_point", "mud_lanes"}
+BLOCKS = {"mud_blocks": {"mud_kernel", "mud_lane_kernel"}}
 
 
 def tangents_met(files):
@@ -230,7 +232,8 @@ def read():
     """{module: (folder, text)} of every source."""
     found = {}
     for file in sources("common/*.f90", "materials/**/*.f90", "drivers/**/*.f90", "host/**/*.f90", "umat/core/**/*.f90",
-                        "umat/abi/**/*.f90", "umat/doors/*.f90", "umat/include/*.f90", "umat/tables/*.f90"):
+                        "umat/abi/**/*.f90", "umat/lanes/*.f90", "umat/doors/*.f90", "umat/include/*.f90",
+                        "umat/tables/*.f90"):
         found[file.stem] = (str(file.parent.relative_to(root)), file.read_text(encoding="utf-8"))
     return found
 

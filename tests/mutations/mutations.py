@@ -73,7 +73,7 @@ MUTATIONS = [
      (BONDING, "divisor = FORCE_A + FORCE_B*t", "divisor = FORCE_A + 0.0_wp*FORCE_B*t")),
     ("retention without Omega in dS_w/de", (RETENTION, "sat%ds_de = at%slope*self%omega/e", "sat%ds_de = at%slope/e")),
     ("retention without the void ratio",
-     (RETENTION, "log_suction + self%omega*log(e)", "log_suction + 0.0_wp*log(e)")),
+     (RETENTION, "log(p_c/self%p_a) + self%omega*log(e)", "log(p_c/self%p_a) + 0.0_wp*log(e)")),
     # hydraulic hysteresis
     ("a scanning branch dries with the exponent of wetting",
      (RETENTION, "q = merge(1.0_wp + self%b_d, 1.0_wp - self%b_w, dries)",

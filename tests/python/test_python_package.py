@@ -257,6 +257,12 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
         and np.array_equal(mud.state(kept.statev, "suction"), suctions)
         and np.array_equal(sand.update(begun.stress[2], begun.statev[2], SHEAR, 10.0).stress, wetter.stress[2]),
     )
+    side = sand.update_batch(begun.stress, begun.statev, shear, 0.5 * suctions, tangent="consistent", lanes=True)
+    check(
+        "points side by side have the answers of points one by one but for rounding",
+        np.allclose(side.stress, wetter.stress, rtol=1e-13, atol=0.0)
+        and np.allclose(side.columns, wetter.columns, rtol=1e-9, atol=1e-9 * np.abs(wetter.columns).max()),
+    )
     curve = sand.saturation_batch(wetter.statev)
     check( "the degree of saturation of points is that of their update, with its slopes", np.array_equal(
         curve.s_w, mud.state(wetter.statev, "saturation")) and np.array_equal(curve.dsw_dpc, wetter.dsw_dpc), )

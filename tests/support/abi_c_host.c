@@ -48,13 +48,13 @@ void abi_status_codes(int codes[18])
    memcpy(codes, all, sizeof all);
 }
 
-void abi_options(int options[26])
+void abi_options(int options[27])
 {
-   const int all[26] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
+   const int all[27] = {MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL,
                         MUD_ROTATION, MUD_EVOLUTION, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONTINUUM,
                         MUD_TANGENT_CONSISTENT, MUD_TANGENT_PRESENT, MUD_TOTAL_STRESS, MUD_IN_PIECES, MUD_ON_NOTHING,
                         MUD_ON_PROPS, MUD_ON_STATEV, MUD_ON_STRESS, MUD_ON_STRAIN, MUD_ON_SUCTION, MUD_ON_VOID_RATIO,
-                        MUD_ON_ARGUMENT, MUD_ON_ROTATION};
+                        MUD_ON_ARGUMENT, MUD_ON_ROTATION, MUD_LANES};
    memcpy(options, all, sizeof all);
 }
 
@@ -206,6 +206,16 @@ int abi_null_pointers_of_update(void)
          return 0;
    }
    return 1;
+}
+
+/* 1 if a library of GNU compilers takes points side by side on this processor. */
+int abi_has_lanes(void)
+{
+#if defined __x86_64__ && defined __GNUC__ && !defined __clang__
+   return __builtin_cpu_supports("x86-64-v3") != 0;
+#else
+   return 0;
+#endif
 }
 
 /* 1 if NULL is answered with a code by every other function that takes a pointer. */

@@ -12,6 +12,7 @@ module mud_batch
    use mud_registry, only: NSTATV, NSTATV_BASE, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
    use mud_retention, only: saturation_t, saturation, read_preset
    use mud_retention_point, only: state_saturation
+   use mud_side_by_side, only: given_t, update_side_by_side, WIDTH
    use mud_state, only: statev_size, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_STATEV, &
       ON_ARGUMENT
@@ -22,7 +23,8 @@ module mud_batch
    private
    public :: c_init_points, c_update_points, c_saturation_points
 
-   integer, parameter :: CHUNK = 16   !< Points a thread takes at a time: costs differ from point to point.
+   integer, parameter :: CHUNK = 2   !< Rows of WIDTH points a thread takes at a time: costs differ from point to point.
+   integer, parameter :: SIDE_BY_SIDE = 64   !< MUD_LANES of mud.h.
    integer, parameter :: BEGIN = 1, UPDATE = 2, RETAIN = 3   !< Tasks, done for every point.
 
    !> struct mud_points of mud.h.
@@ -83,48 +85,63 @@ contains
       type(c_ptr), intent(in) :: materials, points, summary
       integer(c_int), intent(in) :: n_materials
       type(prepared_t), pointer, contiguous :: material(:)
-      type(points_t), pointer :: given
+      type(points_t), pointer :: at_host
+      type(points_t) :: given
       type(arrays_t) :: arrays
       type(mud_status_t) :: status
       type(summary_t) :: total
-      type(output_t) :: output
-      type(report_t) :: report
-      integer :: i, j, k
-      logical :: raised
+      type(output_t) :: output(WIDTH)
+      type(report_t) :: report(WIDTH)
+      integer :: first, i, j(WIDTH), k(WIDTH), n
+      logical :: raised, lanes, done(WIDTH)
       !$omp declare reduction (join : summary_t : add(omp_in, omp_out)) initializer (omp_priv = no_points())
 
-      nullify (given)
       call find_materials(materials, n_materials, material, status)
       if (.not. c_associated(points)) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-      if (status%code == MUD_OK) call c_f_pointer(points, given)
-      if (status%code == MUD_OK) status = fault_of(task, given)
+      if (status%code == MUD_OK) then
+         call c_f_pointer(points, at_host)
+         given = at_host
+         lanes = iand(given%tangent, SIDE_BY_SIDE) /= 0 .and. given%tangent > 0
+         if (lanes) given%tangent = given%tangent - SIDE_BY_SIDE
+         lanes = lanes .and. task == UPDATE .and. .not. is_present(given%tangent)
+         status = fault_of(task, given)
+      end if
       if (status%code == MUD_OK) call find_arrays(task, given, int(n_materials), arrays, status)
       run = status%code
       if (status%code /= MUD_OK) return
 
       total = no_points()
-      !$omp parallel do schedule(dynamic, CHUNK) default(shared) private(i, j, k, output, report, raised) &
+      !$omp parallel do schedule(dynamic, CHUNK) default(shared) private(i, j, k, n, output, report, raised, done) &
       !$omp num_threads(thread_count(given%threads)) reduction(join:total)
-      do i = 1, given%n
-         j = i
-         if (associated(arrays%list)) j = arrays%list(i) + 1
-         k = 1
-         if (associated(arrays%material)) k = arrays%material(j) + 1
-         raised = .false.
-         select case (task)
-         case (BEGIN)
-            call begin_point(material(k)%par, arrays, j, is_total(given%tangent), raised, report)
-         case (UPDATE)
-            call update_point(material(k)%par, arrays, j, given%tangent, output, report)
-         case default
-            call retain_point(material(k)%par, arrays, j, report)
-         end select
-         if (associated(arrays%codes)) arrays%codes(j) = report%status
-         if (associated(arrays%reports)) arrays%reports(j) = report
-         call add(of_point(report, j - 1, raised), total)
-         if (task == UPDATE .and. report%status == MUD_OK) then
-            if (output%statev(S_OPEN) > 0.5_wp) total%open = total%open + 1
-         end if
+      do first = 1, given%n, WIDTH
+         n = min(WIDTH, given%n - first + 1)
+         do i = 1, n
+            j(i) = first - 1 + i
+            if (associated(arrays%list)) j(i) = arrays%list(j(i)) + 1
+            k(i) = 1
+            if (associated(arrays%material)) k(i) = arrays%material(j(i)) + 1
+         end do
+         done = .false.
+         if (lanes) call update_together(material, arrays, j(:n), k(:n), given%tangent, output, report, done)
+         do i = 1, n
+            raised = .false.
+            select case (task)
+            case (BEGIN)
+               call begin_point(material(k(i))%par, arrays, j(i), is_total(given%tangent), raised, report(i))
+            case (UPDATE)
+               if (.not. done(i)) call update_point(material(k(i))%par, arrays, j(i), given%tangent, output(i), &
+                                                    report(i))
+               if (report(i)%status == MUD_OK) call give_results(arrays, j(i), output(i))
+            case default
+               call retain_point(material(k(i))%par, arrays, j(i), report(i))
+            end select
+            if (associated(arrays%codes)) arrays%codes(j(i)) = report(i)%status
+            if (associated(arrays%reports)) arrays%reports(j(i)) = report(i)
+            call add(of_point(report(i), j(i) - 1, raised), total)
+            if (task == UPDATE .and. report(i)%status == MUD_OK) then
+               if (output(i)%statev(S_OPEN) > 0.5_wp) total%open = total%open + 1
+            end if
+         end do
       end do
       !$omp end parallel do
       run = total%failed
@@ -259,6 +276,44 @@ contains
       if (given > 0.0_wp) s_w = given
    end function first_saturation
 
+   !> Increments of the points j of materials k side by side, those of a row with one material together; done tells
+   !> which need no other answer.
+   subroutine update_together(material, arrays, j, k, tangent, output, report, done)
+      type(prepared_t), intent(in), contiguous :: material(:)
+      type(arrays_t), intent(in) :: arrays
+      integer, intent(in) :: j(:), k(:)
+      integer(c_int), intent(in) :: tangent
+      type(output_t), intent(inout) :: output(WIDTH)
+      type(report_t), intent(inout) :: report(WIDTH)
+      logical, intent(inout) :: done(WIDTH)
+      type(given_t) :: given(WIDTH)
+      integer :: i, first
+
+      first = 1
+      do i = 1, size(j)
+         given(i) = increment_of(arrays, j(i))
+         if (i < size(j)) then
+            if (k(i + 1) == k(first)) cycle
+         end if
+         call update_side_by_side(material(k(first))%par, given(first:i), tangent, output(first:i), report(first:i), &
+                                  done(first:i))
+         first = i + 1
+      end do
+   end subroutine update_together
+
+   !> An increment of point j as the arrays have it.
+   type(given_t) function increment_of(arrays, j) result(given)
+      type(arrays_t), intent(in) :: arrays
+      integer, intent(in) :: j
+
+      given%stress = arrays%stress0(:, j)
+      given%statev => arrays%statev0(:, j)
+      given%d_strain = 0.0_wp
+      if (associated(arrays%strain)) given%d_strain = arrays%strain(:, j)
+      given%suction = given%statev(S_SUCTION)
+      if (associated(arrays%suction)) given%suction = arrays%suction(j)
+   end function increment_of
+
    !> An increment of point j.
    subroutine update_point(par, arrays, j, tangent, output, report)
       type(params_t), intent(in) :: par
@@ -267,16 +322,19 @@ contains
       integer(c_int), intent(in) :: tangent
       type(output_t), intent(inout) :: output
       type(report_t), intent(out) :: report
-      real(wp) :: strain(6), suction
+      type(given_t) :: given
+
+      given = increment_of(arrays, j)
+      call host_increment(par, given%stress, given%statev, given%d_strain, given%suction, int(tangent), output, report)
+   end subroutine update_point
+
+   !> Results of point j to their places.
+   subroutine give_results(arrays, j, output)
+      type(arrays_t), intent(in) :: arrays
+      integer, intent(in) :: j
+      type(output_t), intent(in) :: output
       integer(c_int), target :: number
 
-      strain = 0.0_wp
-      if (associated(arrays%strain)) strain = arrays%strain(:, j)
-      suction = arrays%statev0(S_SUCTION, j)
-      if (associated(arrays%suction)) suction = arrays%suction(j)
-      call host_increment(par, arrays%stress0(:, j), arrays%statev0(:, j), strain, suction, int(tangent), &
-                          output, report)
-      if (report%status /= MUD_OK) return
       number = j - 1
       call remark_on_void_ratio(output%statev, place_t('mud_update_points', point=c_loc(number)))
       if (associated(arrays%stress1)) arrays%stress1(:, j) = output%stress
@@ -289,7 +347,7 @@ contains
       if (associated(arrays%sw_e)) arrays%sw_e(:, j) = output%dsw_deps
       if (associated(arrays%sw_pc)) arrays%sw_pc(j) = output%dsw_dpc
       if (associated(arrays%s_w)) arrays%s_w(j) = output%statev(S_SATURATION)
-   end subroutine update_point
+   end subroutine give_results
 
    !> S_w and its slopes of point j at another suction.
    subroutine retain_point(par, arrays, j, report)

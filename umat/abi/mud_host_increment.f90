@@ -12,7 +12,7 @@ module mud_host_increment
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: host_increment, never_began, suction_change, kind_of, is_present, is_total
+   public :: host_increment, host_stress, make_total, never_began, suction_change, kind_of, is_present, is_total
 
    integer, parameter :: TANGENT_PRESENT = 4   !< MUD_TANGENT_PRESENT of mud.h.
    integer, parameter :: WITH_TOTAL_STRESS = 16    !< MUD_TOTAL_STRESS of mud.h.
@@ -64,9 +64,7 @@ contains
          return
       end if
       change = suction_change(statev(S_SUCTION), suction)
-      start = stress
-      if (is_total(options) .and. is_finite(statev(S_SUCTION)) .and. is_finite(statev(S_SATURATION))) &
-         start = effective_stress(stress, 0.0_wp, statev(S_SATURATION), statev(S_SUCTION))
+      start = host_stress(stress, statev, options)
       if (is_present(options)) then
          call kernel_tangent(par, start, statev, d_strain, statev(S_SUCTION), change, output, report)
       else
@@ -75,6 +73,18 @@ contains
       end if
       if (report%status == MUD_OK .and. is_total(options)) call make_total(output)
    end subroutine host_increment
+
+   !> Effective stress of a host's, both in its unit.
+   pure function host_stress(stress, statev, options) result(start)
+      real(wp), intent(in) :: stress(6)
+      real(wp), intent(in), contiguous :: statev(:)
+      integer, intent(in) :: options
+      real(wp) :: start(6)
+
+      start = stress
+      if (is_total(options) .and. is_finite(statev(S_SUCTION)) .and. is_finite(statev(S_SATURATION))) &
+         start = effective_stress(stress, 0.0_wp, statev(S_SATURATION), statev(S_SUCTION))
+   end function host_stress
 
    !> Layout 0: no start has filled it. One that is not finite is refused elsewhere.
    pure logical function never_began(statev)
@@ -94,6 +104,7 @@ contains
       if (abs(change) <= SAME_SUCTION*max(abs(from), abs(to))) change = 0.0_wp
    end function suction_change
 
+   !> Results of an update as those of total stress less air pressure.
    pure subroutine make_total(output)
       type(output_t), intent(inout) :: output
 

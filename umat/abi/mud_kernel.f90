@@ -21,8 +21,9 @@ module mud_kernel
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
-   public :: report_t, output_t, kernel_begin, kernel_point, kernel_tangent, &
+   public :: report_t, output_t, start_t, kernel_begin, kernel_point, kernel_tangent, &
       rotate_statev, failed_report, copy_statev, TANGENT_FROM_PROPS, ON_STRESS_RATIO
+   public :: read_state, write_output, report_of, from_umat_strain
 
    integer, parameter :: TANGENT_FROM_PROPS = -1   !< Take the tangent kind from PROPS.
    integer, parameter :: ON_STRESS_RATIO = 7      !< Index of a status on stress: the ratio q/p', no component.
@@ -44,6 +45,12 @@ module mud_kernel
                         n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile, n_turns_cleared
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type report_t
+
+   !> An increment of a point as kernel_point is given it; the suction at its start is that of statev.
+   type :: start_t
+      real(wp) :: stress(6), d_strain(6), d_suction
+      real(wp), pointer, contiguous :: statev(:)
+   end type start_t
 
    !> Results of a successful update, UMAT conventions.
    type :: output_t
@@ -343,6 +350,7 @@ contains
       status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(statev_size(options), wp), huge(1.0_wp))
    end function wrong_nstatv
 
+   !> Report of an update that so many counters count.
    pure function report_of(status, counters, reached) result(report)
       type(mud_status_t), intent(in) :: status
       type(counters_t), intent(in) :: counters

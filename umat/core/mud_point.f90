@@ -23,6 +23,7 @@ module mud_point
    use mud_transitions, only: begin_substep
    implicit none (type, external)
    private
+   public :: begin_update, end_update, give_tangent
    public :: update_point, TANGENT_NONE, TANGENT_ELASTIC, TANGENT_CONTINUUM, TANGENT_CONSISTENT
 
    integer, parameter :: TANGENT_NONE = 0, TANGENT_ELASTIC = 1, TANGENT_CONTINUUM = 2, TANGENT_CONSISTENT = 3
@@ -75,16 +76,30 @@ contains
          if (follows) call follow_turn(course%with_increment, sens)
       end do
       call end_update(par, course, it, blocks)
+      call give_tangent(par, tangent, n > 0, it, sens, blocks)
+   end subroutine update_point
+
+   !> The tangent of an update that is over.
+   pure subroutine give_tangent(par, tangent, moved, it, sens, blocks)
+      type(params_t), intent(in) :: par
+      integer, intent(in) :: tangent
+      logical, intent(in) :: moved               !< There was an increment.
+      type(integration_t), intent(in) :: it
+      type(sensitivity_t), intent(in) :: sens    !< followed for a consistent one
+      type(blocks_t), intent(inout) :: blocks
+      logical :: slope
+
       if (tangent == TANGENT_NONE) return
       call elastic_blocks(par, it%state, blocks)
-      if (follows) follows = is_slope(sens%y(1:7, 1:6), maxval(abs(blocks%dsig_deps)))
-      if (follows) then
+      slope = tangent == TANGENT_CONSISTENT .and. moved
+      if (slope) slope = is_slope(sens%y(1:7, 1:6), maxval(abs(blocks%dsig_deps)))
+      if (slope) then
          blocks%dsig_deps = transpose(sens%y(1:6, 1:6))
          blocks%dsig_dpc = sens%y(7, 1:6)
-      else if (tangent >= TANGENT_CONTINUUM .and. n > 0) then
+      else if (tangent >= TANGENT_CONTINUUM .and. moved) then
          call continuum_blocks(par, it%inc, it%trial, it%state, blocks)
       end if
-   end subroutine update_point
+   end subroutine give_tangent
 
    !> Whether derivatives of the stress are slopes: those of explicit substeps at the limit of their stability grow from
    !> one to the next, up to 1e108 kPa, while error control keeps the stress. docs/theory/integration.md section 5.3.

@@ -48,10 +48,12 @@ enum mud_field {
 };
 /* Kind of tangent. PRESENT: nothing is updated; the slopes are those with which the state goes on, for the first
  * iteration of a step. MUD_TOTAL_STRESS may be added to each: stress0, stress1, dsig_deps and dsig_dpc are those of
- * total stress less air pressure, sigma + p_a I = sigma' + S_w p_c I (tension positive). */
+ * total stress less air pressure, sigma + p_a I = sigma' + S_w p_c I (tension positive). MUD_LANES may be added for
+ * mud_update_points: up to eight points of a material side by side, in less time, where the processor (x86-64-v3 or
+ * later) and the material allow it; the others one by one. Numbers then differ from those without it by rounding. */
 enum mud_tangent {
    MUD_TANGENT_NONE = 0, MUD_TANGENT_ELASTIC = 1, MUD_TANGENT_CONTINUUM = 2, MUD_TANGENT_CONSISTENT = 3,
-   MUD_TANGENT_PRESENT = 4, MUD_TOTAL_STRESS = 16
+   MUD_TANGENT_PRESENT = 4, MUD_TOTAL_STRESS = 16, MUD_LANES = 64
 };
 
 /* What one update did and, on failure, where it stopped: filled by every mud_update. */

@@ -30,6 +30,7 @@ def arguments():
     parser.add_argument("--cells", default="", help="triangles, quadrilaterals, tetrahedra or hexahedra")
     parser.add_argument("--linear", choices=("mumps", "amg"), default="mumps")
     parser.add_argument("--linear-tolerance", type=float, default=1e-8)
+    parser.add_argument("--lanes", action="store_true", help="points of MUD side by side, eight at a time")
     parser.add_argument("--checkpoint", help="file, written every checkpoint_steps of the scene and at the end")
     parser.add_argument("--restart", help="checkpoint to go on from")
     parser.add_argument("--stop-after", type=int, help="number of steps after which to end")
@@ -50,7 +51,8 @@ def main():
     began = time.monotonic()
     try:
         run = Run(comm, Scene(given.scene), Options(given.thickness, given.layers, given.sector, given.cells,
-                                                    given.linear, given.linear_tolerance, told=not given.quiet))
+                                                    given.linear, given.linear_tolerance, told=not given.quiet,
+                                                    lanes=given.lanes))
         folder = pathlib.Path(given.output)
         if given.check:
             run.tell(f"{run.space.mesh.cells_of_all} cells, {comm.allreduce(run.space.owned)} unknowns: in order")

@@ -38,6 +38,7 @@ class Options:
     linear: str = "mumps"
     linear_tolerance: float = 1.0e-8
     searches: int = 6
+    lanes: bool = False
     told: bool = True
 
 
@@ -65,7 +66,8 @@ class Run:
         self.share = o.sector/360.0 if self.swept else o.thickness if self.thick else 1.0
         self.up = space.dimension - 1
         self.regions = self._regions()
-        self.points = Points(comm, scene, np.repeat(self.regions, space.per_cell), not scene.air_at_rest)
+        self.points = Points(comm, scene, np.repeat(self.regions, space.per_cell), not scene.air_at_rest,
+                             o.lanes)
         self.ground = balances.Ground(scene, np.repeat(self.regions, space.per_cell))
         self.weight = np.zeros(3)
         self.weight[self.up] = -scene.scene.gravity

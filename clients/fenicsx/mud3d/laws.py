@@ -21,8 +21,8 @@ class Refused(Exception):
 class Points:
     """n points. Ends of a step: 0 is its start, 1 the present guess of its end."""
 
-    def __init__(self, comm, scene, region_of_point, saturated):
-        self.comm, self.n, self.saturated = comm, len(region_of_point), saturated
+    def __init__(self, comm, scene, region_of_point, saturated, lanes=False):
+        self.comm, self.n, self.saturated, self.lanes = comm, len(region_of_point), saturated, lanes
         self.region = region_of_point
         laws = [scene.material(region.material) for region in scene.regions]
         sands = [law for law in laws if isinstance(law, mud.Material)]
@@ -90,7 +90,8 @@ class Points:
                 self.stress1[:], self.state1[:] = self.stress0, self.state0
             else:
                 answer = self.sands.update_batch(self.stress0, self.state0, np.ascontiguousarray(strain),
-                                                 np.ascontiguousarray(suction), "consistent", **arguments)
+                                                 np.ascontiguousarray(suction), "consistent", lanes=self.lanes,
+                                                 **arguments)
         self._refuse(answer)
         if len(self.mud):
             i = self.mud

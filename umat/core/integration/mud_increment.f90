@@ -16,6 +16,7 @@ module mud_increment
    use mud_way, only: way_t, void_ratio_on, suction_on, SHORTEST_PHASE
    implicit none (type, external)
    private
+   public :: turns, add_aside, count_rate
    public :: increment_t, new_increment, take_phase, end_in_domain, volume_from_centre, direction_at, void_ratio_at, &
              suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, STRAIGHT
 
@@ -53,32 +54,59 @@ contains
       type(counters_t), intent(inout) :: counters
       type(rate_t), intent(in), optional :: near   !< Rate nearby, as rate_at has it.
       type(conditions_t) :: at
-      real(wp) :: loading(6), aside(6), from_centre, e, g, volume
+      real(wp) :: loading(6), aside(6), from_centre, e
 
       e = void_ratio_at(inc, time)
       if (inc%suction%bonds) at%bond = bonding(inc%suction, suction_at(inc, time), e)
       at%rests = inc%rests
       at%e = e
       at%r_in = r_in
-      if (has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)) then
+      if (turns(inc, mode)) then
          call loading_strain(inc, mode, time, loading, aside, from_centre)
          call rate_at(par, y, at, loading, inc%d_pc, mode, w, near)
-         g = 2.0_wp*centre_modulus(par%elastic, e, w%k, from_centre)
-         volume = trace(aside)
-         w%d_p = w%d_p + w%k*volume
-         w%d_sigma = w%d_sigma + g*aside
-         w%d_sigma(1:3) = w%d_sigma(1:3) + (w%k - g/3.0_wp)*volume
+         call add_aside(par, e, aside, from_centre, w)
       else
          call rate_at(par, y, at, inc%d_strain, inc%d_pc, mode, w, near)
       end if
       call add_volume_rates(par, inc%d_v, y, w%d_own)
+      call count_rate(par, w, counters)
+   end subroutine rate_of
+
+   !> True if not all of the strain loads.
+   pure logical function turns(inc, mode)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: mode
+
+      turns = has_elastic_part(inc, mode) .and. .not. (inc%straight .and. mode == MODE_ORDINARY)
+   end function turns
+
+   !> Adds to a rate at a void ratio e the elastic one of the strain that does not load; from_centre of loading_strain.
+   pure subroutine add_aside(par, e, aside, from_centre, w)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: e, aside(6), from_centre
+      type(rate_t), intent(inout) :: w
+      real(wp) :: g, volume
+
+      g = 2.0_wp*centre_modulus(par%elastic, e, w%k, from_centre)
+      volume = trace(aside)
+      w%d_p = w%d_p + w%k*volume
+      w%d_sigma = w%d_sigma + g*aside
+      w%d_sigma(1:3) = w%d_sigma(1:3) + (w%k - g/3.0_wp)*volume
+   end subroutine add_aside
+
+   !> Counts a rate and the guards that act in it.
+   pure subroutine count_rate(par, w, counters)
+      type(params_t), intent(in) :: par
+      type(rate_t), intent(in) :: w
+      type(counters_t), intent(inout) :: counters
+
       counters%rate = counters%rate + 1
       if (w%floored .and. par%floored) counters%floor = counters%floor + 1
       if (w%capped_d) counters%cap_d = counters%cap_d + 1
       if (w%capped_h) counters%cap_h = counters%cap_h + 1
       if (w%iso_kept) counters%iso_kept = counters%iso_kept + 1
       if (w%no_root) counters%no_root = counters%no_root + 1
-   end subroutine rate_of
+   end subroutine count_rate
 
    !> A rate as one of the integrated vector. sigma' [kPa], the others [-], per unit of pseudo-time.
    pure subroutine store_rate(w, dy)

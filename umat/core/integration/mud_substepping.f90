@@ -12,7 +12,7 @@ module mud_substepping
    use mud_params, only: params_t
    use mud_registry, only: SCHEME_AUTOMATIC
    use mud_status, only: fail, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, MUD_NO_DIRECTION, MUD_NOT_FINITE, &
-      ON_STRESS
+      ON_STRESS, MUD_OK
    use mud_rates, only: MODE_ORDINARY
    use mud_tensor, only: ddot, is_finite, all_finite
    use mud_trace, only: SUBSTEP_REJECTED, SUBSTEP_ACCEPTED, SUBSTEP_FAILED
@@ -21,7 +21,7 @@ module mud_substepping
    use mud_trial, only: take_step, error_norm
    implicit none (type, external)
    private
-   public :: stepping_t, begin_phase, try_substep, end_substep, end_phase
+   public :: stepping_t, begin_phase, try_substep, plan_attempt, judge, end_substep, end_phase
 
    !> Steps of a phase: sizes are shares of the increment, with the scheme automatic those of third order [-].
    type :: stepping_t
@@ -29,6 +29,7 @@ module mud_substepping
       real(wp) :: planned    !< Before the phase cut it short, in units of strain, 0: none.
       real(wp) :: error      !< Error of the last attempt.
       real(wp) :: factor     !< Factor on the size that this error allows.
+      logical :: may_grow    !< No attempt at this substep was rejected.
       logical :: turns       !< The elastic domain turns sharply: third order.
       integer :: elastic     !< Substeps without a direction so far.
       type(control_t) :: control
@@ -72,23 +73,12 @@ contains
       type(stepping_t), intent(inout) :: step
       real(wp), intent(out) :: h               !< size of the last one, a share of the increment [-]
       type(integration_t), intent(inout) :: it
-      real(wp) :: rest, tolerance
-      logical :: may_grow
+      logical :: ended
 
-      rest = it%inc%to - it%trial%time
-      may_grow = .true.
-      it%event = EVENT_NONE
-      do
-         h = min(step%h, rest)
-         if (it%counters%substep + it%counters%reject >= par%max_substeps) then
-            it%status = fail(MUD_TOO_MANY_SUBSTEPS, value=real(par%max_substeps, wp))
-            return
-         end if
-         step%h = max(step%h, par%h_min)
-         call choose_order(par, rest, step%h, merge(0.0_wp, par%second_share, step%turns), it%inc, it%trial)
-         h = step%h
-         if (it%trial%divides .and. h < rest) h = max(rest/number_of_pieces(rest/h), par%h_min)
-         if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
+      ended = .false.
+      do while (.not. ended)
+         call plan_attempt(par, step, h, it)
+         if (it%status%code /= MUD_OK) return
          if (it%trial%relaxation%speed > 0.0_wp) then
             it%trial%transient%known = .false.
          else if (it%trial%mode == MODE_ORDINARY) then
@@ -96,31 +86,67 @@ contains
                                 it%trial%transient, it%counters)
          end if
          call take_step(par, it%inc, h, it%trial, it%counters)
-         step%error = error_norm(par, it%inc%scheme, it%trial, h)
-         if (.not. all_finite(it%trial%y) .or. .not. is_finite(step%error)) then
-            it%status = fail(MUD_NOT_FINITE, ON_STRESS)
-            call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
-            return
-         end if
-         call judge_attempt(par, it%inc, it%trial, h, step%error, may_grow, step%control, tolerance, step%factor)
-         if (step%error <= tolerance) return
-         if (min(step%h, h) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
-            if (par%guarded) then
-               it%status = fail(MUD_MINIMUM_STEP, value=step%error, lower=0.0_wp, upper=par%tolerance)
-               call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
-            else
-               it%counters%min_step = it%counters%min_step + 1
-               step%factor = 1.0_wp
-            end if
-            return
-         end if
-         it%counters%reject = it%counters%reject + 1
-         call record(h, step%error, it%trial%y(1:6), SUBSTEP_REJECTED, it)
-         may_grow = .false.
-         step%h = next_size(par, it%inc, it%trial, h, min(step%factor, 0.9_wp), .false.)
-         step%planned = step%h*it%size
+         call judge(par, h, step, it, ended)
       end do
    end subroutine try_substep
+
+   !> Size h and pair of an attempt.
+   pure subroutine plan_attempt(par, step, h, it)
+      type(params_t), intent(in) :: par
+      type(stepping_t), intent(inout) :: step
+      real(wp), intent(out) :: h
+      type(integration_t), intent(inout) :: it
+      real(wp) :: rest
+
+      rest = it%inc%to - it%trial%time
+      it%event = EVENT_NONE
+      h = min(step%h, rest)
+      if (it%counters%substep + it%counters%reject >= par%max_substeps) then
+         it%status = fail(MUD_TOO_MANY_SUBSTEPS, value=real(par%max_substeps, wp))
+         return
+      end if
+      step%h = max(step%h, par%h_min)
+      call choose_order(par, rest, step%h, merge(0.0_wp, par%second_share, step%turns), it%inc, it%trial)
+      h = step%h
+      if (it%trial%divides .and. h < rest) h = max(rest/number_of_pieces(rest/h), par%h_min)
+      if (h*(1.0_wp + LAST_SLIVER) >= rest) h = rest
+   end subroutine plan_attempt
+
+   !> Whether an attempt h was the last one: its error is allowed, or it failed.
+   pure subroutine judge(par, h, step, it, ended)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: h
+      type(stepping_t), intent(inout) :: step
+      type(integration_t), intent(inout) :: it
+      logical, intent(out) :: ended
+      real(wp) :: tolerance
+
+      ended = .true.
+      step%error = error_norm(par, it%inc%scheme, it%trial, h)
+      if (.not. all_finite(it%trial%y) .or. .not. is_finite(step%error)) then
+         it%status = fail(MUD_NOT_FINITE, ON_STRESS)
+         call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
+         return
+      end if
+      call judge_attempt(par, it%inc, it%trial, h, step%error, step%may_grow, step%control, tolerance, step%factor)
+      if (step%error <= tolerance) return
+      if (min(step%h, h) <= par%h_min*(1.0_wp + LAST_SLIVER)) then
+         if (par%guarded) then
+            it%status = fail(MUD_MINIMUM_STEP, value=step%error, lower=0.0_wp, upper=par%tolerance)
+            call record(h, step%error, it%trial%y(1:6), SUBSTEP_FAILED, it)
+         else
+            it%counters%min_step = it%counters%min_step + 1
+            step%factor = 1.0_wp
+         end if
+         return
+      end if
+      ended = .false.
+      it%counters%reject = it%counters%reject + 1
+      call record(h, step%error, it%trial%y(1:6), SUBSTEP_REJECTED, it)
+      step%may_grow = .false.
+      step%h = next_size(par, it%inc, it%trial, h, min(step%factor, 0.9_wp), .false.)
+      step%planned = step%h*it%size
+   end subroutine judge
 
    !> Number of pieces of the rest of a phase for the number n that error control proposes [-]. It is one of few, so
    !> that a small change of the increment does not change the sizes of its substeps, as shares of the rest: the
@@ -146,6 +172,7 @@ contains
       real(wp) :: time, whole
 
       whole = h
+      step%may_grow = .true.
       step%h = next_size(par, it%inc, it%trial, h, step%factor, h >= it%inc%to - it%inc%from)
       call stop_at_event(par, step%error, h, it)
       ! Rounding decides whether the event that ended the substep before is met again: such a piece has no length, and
@@ -186,6 +213,7 @@ contains
       length = it%inc%to - it%inc%from
       turn = turn_of(it%inc)
       step%turns = turn > SHARP
+      step%may_grow = .true.
       step%elastic = 0
       step%planned = it%state%last_step
       ! of the pair that is tried first

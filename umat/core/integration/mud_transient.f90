@@ -13,7 +13,8 @@ module mud_transient
    use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: transient_t, find_transient, without_turn, half_way, split, take_fading, add_faded
+   public :: transient_t, find_transient, begin_transient, take_far, take_half, &
+             without_turn, half_way, split, take_fading, add_faded
 
    !> Rates that fade, per unit of pseudo-time.
    type :: transient_t
@@ -22,6 +23,7 @@ module mud_transient
       integer :: terms              !< 0: the strain does not turn, nothing fades but what changes of it would; 1, 2.
       real(wp) :: since             !< Pseudo-time from which they fade [-].
       real(wp) :: speed             !< k [-]
+      real(wp) :: across            !< Twice the sine of half the angle of the turn [-].
       real(wp) :: parts(NY, 2)
       type(rate_t) :: far, half     !< Rates from the same start without the turn; half-way, where there are two terms.
    end type transient_t
@@ -45,34 +47,73 @@ contains
       type(rate_t), intent(in) :: first
       type(transient_t), intent(inout) :: transient
       type(counters_t), intent(inout) :: counters
-      real(wp) :: length, across, now(NY), far(NY), half(NY)
+      logical :: more
 
+      call begin_transient(inc, time, h, first, transient, more)
+      if (.not. more) return
+      call rate_of(par, without_turn(inc), time, y0, r_in, MODE_ORDINARY, transient%far, counters, first)
+      call take_far(par, inc, y0, first, transient, more)
+      if (.not. more) return
+      call rate_of(par, inc, half_way(transient), y0, r_in, MODE_ORDINARY, transient%half, counters, first)
+      call take_half(first, transient)
+   end subroutine find_transient
+
+   !> Whether there are parts; more: the rate `far` is needed for them.
+   pure subroutine begin_transient(inc, time, h, first, transient, more)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: time, h
+      type(rate_t), intent(in) :: first
+      type(transient_t), intent(inout) :: transient
+      logical, intent(out) :: more
+      real(wp) :: length
+
+      more = .false.
       if (transient%sought .or. .not. has_elastic_part(inc, MODE_ORDINARY) .or. .not. first%loading) return
       length = inc%length
       if (length*h < LONG*inc%rho .or. length*(inc%to - time) < LN_2*inc%rho) return
-      across = 0.0_wp   ! twice the sine of half the angle
-      if (.not. inc%straight) across = norm(direction_at(inc, time) - inc%d_strain/length)
-      if (0.5_wp*across**2 > LARGEST) return
+      transient%across = 0.0_wp
+      if (.not. inc%straight) transient%across = norm(direction_at(inc, time) - inc%d_strain/length)
+      if (0.5_wp*transient%across**2 > LARGEST) return
       transient%sought = .true.
       transient%known = .true.
       transient%since = time
       transient%speed = length/inc%rho
       transient%parts = 0.0_wp
       transient%terms = 0
-      if (across < STRAIGHT) return
-      call rate_of(par, without_turn(inc), time, y0, r_in, MODE_ORDINARY, transient%far, counters, first)
+      more = transient%across >= STRAIGHT
+   end subroutine begin_transient
+
+   !> One part, from the rate `far`; more: the rate `half` is needed for a second one.
+   pure subroutine take_far(par, inc, y0, first, transient, more)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: y0(NY)
+      type(rate_t), intent(in) :: first
+      type(transient_t), intent(inout) :: transient
+      logical, intent(out) :: more
+      real(wp) :: now(NY), far(NY)
+
       transient%known = transient%far%loading
       call store_rate(first, now)
       call store_rate(transient%far, far)
       transient%terms = 1
       transient%parts(:, 1) = now - far
-      if (2.0_wp*first%g*inc%rho*across**2 < ONE_TERM*par%tolerance*norm(y0(1:6))) return
-      call rate_of(par, inc, half_way(transient), y0, r_in, MODE_ORDINARY, transient%half, counters, first)
+      more = 2.0_wp*first%g*inc%rho*transient%across**2 >= ONE_TERM*par%tolerance*norm(y0(1:6))
+   end subroutine take_far
+
+   !> Two parts, from the rate `half` too.
+   pure subroutine take_half(first, transient)
+      type(rate_t), intent(in) :: first
+      type(transient_t), intent(inout) :: transient
+      real(wp) :: now(NY), far(NY), half(NY)
+
+      call store_rate(first, now)
+      call store_rate(transient%far, far)
       transient%known = transient%known .and. transient%half%loading
       call store_rate(transient%half, half)
       transient%terms = 2
       call split(now, far, half, transient%parts(:, 1), transient%parts(:, 2))
-   end subroutine find_transient
+   end subroutine take_half
 
    !> The increment whose whole strain loads.
    pure function without_turn(inc) result(straight)

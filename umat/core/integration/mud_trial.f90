@@ -16,7 +16,7 @@ module mud_trial
    use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
-   public :: trial_t, take_step, error_norm
+   public :: trial_t, take_step, begin_stage, end_stage, end_stages, error_norm
 
    real(wp), parameter :: PLASTIC_SHEAR_SCALE = 0.01_wp   !< Scale of the plastic shear in the error norm [-].
    !> Errors of stresses below this share of p_atm count as if the stress were that large: 1e-5 of 0.1 kPa is nothing
@@ -76,21 +76,48 @@ contains
          call move_inside(par, inc, trial%time, h, trial%y)
          return
       end if
-      call store_rate(trial%w(1), trial%rates(:, 1))
-      if (trial%transient%known) call take_fading(trial%transient, trial%time, trial%rates(:, 1))
-      if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:1))
+      call end_stage(1, trial%time, h, trial)
       do i = 2, inc%scheme%stages
-         time = trial%time + inc%scheme%node(i)*h
-         call stage_point(inc%scheme, i, trial%y0, trial%rates, h, trial%points(:, i))
-         if (trial%transient%known) call add_faded(trial%transient, trial%time, time, trial%points(:, i))
+         call begin_stage(inc, i, h, trial, time)
          call rate_of(par, inc, time, trial%points(:, i), trial%r_in, trial%mode, trial%w(i), counters, trial%w(1))
-         call store_rate(trial%w(i), trial%rates(:, i))
-         if (trial%transient%known) call take_fading(trial%transient, time, trial%rates(:, i))
-         if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:i))
+         call end_stage(i, time, h, trial)
       end do
+      call end_stages(inc, h, trial)
+   end subroutine take_step
+
+   !> Place and time of a stage of a substep h.
+   pure subroutine begin_stage(inc, i, h, trial, time)
+      type(increment_t), intent(in) :: inc
+      integer, intent(in) :: i
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+      real(wp), intent(out) :: time
+
+      time = trial%time + inc%scheme%node(i)*h
+      call stage_point(inc%scheme, i, trial%y0, trial%rates, h, trial%points(:, i))
+      if (trial%transient%known) call add_faded(trial%transient, trial%time, time, trial%points(:, i))
+   end subroutine begin_stage
+
+   !> The rate of a stage is known.
+   pure subroutine end_stage(i, time, h, trial)
+      integer, intent(in) :: i
+      real(wp), intent(in) :: time, h
+      type(trial_t), intent(inout) :: trial
+
+      call store_rate(trial%w(i), trial%rates(:, i))
+      if (trial%transient%known) call take_fading(trial%transient, time, trial%rates(:, i))
+      if (trial%relaxation%speed > 0.0_wp) call relax(trial%relaxation, h, trial%rates(:, 1:i))
+   end subroutine end_stage
+
+   !> The solution of a substep h, all of whose stages are known.
+   pure subroutine end_stages(inc, h, trial)
+      type(increment_t), intent(in) :: inc
+      real(wp), intent(in) :: h
+      type(trial_t), intent(inout) :: trial
+
       call solution(inc%scheme, trial%y0, trial%rates, h, trial%y)
       if (trial%transient%known) call add_faded(trial%transient, trial%time, trial%time + h, trial%y)
-   end subroutine take_step
+   end subroutine end_stages
 
    !> Relative error of a trial substep; the void ratio is exact. A held point's is that of its stress, p_min times its
    !> stress ratio. [-]; h is the size of the trial, a share of its increment. docs/theory/integration.md section 3.

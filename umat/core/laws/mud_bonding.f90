@@ -6,8 +6,8 @@ module mud_bonding
    use mud_retention, only: retention_t, saturation_t, saturation, saturation_curvature, change_with_turn
    implicit none (type, external)
    private
-   public :: suction_law_t, bonding_t, is_bonded, bonding, bonding_factor, bonding_curvature, bonding_with_turn, &
-             UNBONDED
+   public :: suction_law_t, bonding_t, is_bonded, bonding, bonding_at, bonding_factor, bonding_curvature, &
+             bonding_with_turn, UNBONDED
 
    !> The effects of suction on the soil, saturation and bonding.
    type, extends(retention_t) :: suction_law_t
@@ -47,11 +47,20 @@ contains
       type(suction_law_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e
       type(bonding_t) :: bond
-      real(wp) :: force(0:2), zeta, growth
 
       bond = UNBONDED
-      if (.not. self%bonds) return
-      bond%sat = saturation(self%retention_t, p_c, e)
+      if (self%bonds) bond = bonding_at(self, saturation(self%retention_t, p_c, e), p_c)
+   end function bonding
+
+   !> Bonding where it acts, at a suction [kPa] and the saturation that belongs to it.
+   pure function bonding_at(self, sat, p_c) result(bond)
+      type(suction_law_t), intent(in) :: self
+      type(saturation_t), intent(in) :: sat
+      real(wp), intent(in) :: p_c
+      type(bonding_t) :: bond
+      real(wp) :: force(0:2), zeta, growth
+
+      bond%sat = sat
       force = meniscus_force(self, p_c)
       zeta = (1.0_wp - bond%sat%s_w)*force(0)
       growth = exp(self%b_2*zeta)
@@ -62,7 +71,7 @@ contains
       bond%force_0 = force(0)
       bond%force_1 = force(1)
       bond%force_2 = force(2)
-   end function bonding
+   end function bonding_at
 
    !> f(zeta) at a suction [kPa] and a degree of saturation [-], whichever branch led to it; 1 where bonding does not
    !> act. docs/theory/material.md section 2.2.

@@ -14,9 +14,9 @@ module mud_retention
    implicit none (type, external)
    private
    ! What the rest of the core asks, what it asks along an increment, and single branches.
-   public :: retention_t, saturation_t, turns_t, NO_TURNS, saturation, saturation_curvature, change_with_turn, &
-             moves_with_turn, check_retention, prepare_retention, read_preset, check_preset, check_saturation, &
-             begin_saturation, note_saturation, saturation_from
+   public :: retention_t, saturation_t, turns_t, NO_TURNS, saturation, curve_saturation, saturation_curvature, &
+             change_with_turn, moves_with_turn, check_retention, prepare_retention, read_preset, check_preset, &
+             check_saturation, begin_saturation, note_saturation, saturation_from
    public :: course_t, begin_course, list_kinks, take_branch, turn_around, end_course, slopes_of_suction, MAX_KINKS
    public :: path_t, begin_path, move_along, branch_of, begin_at_turn, saturation_after, keep_turns, log_suction, &
              NO_SUCTION, on_main_curve_t, on_main_curve, main_curve
@@ -148,26 +148,36 @@ contains
       type(retention_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e
       type(saturation_t) :: sat
-      type(on_main_curve_t) :: at
       type(along_t) :: along
       logical :: limited
 
-      sat = saturation_t(self%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
-      if (p_c <= 0.0_wp) return
-      if (self%scanning%acts) then
+      if (self%scanning%acts .and. p_c > 0.0_wp) then
+         sat = saturation_t(self%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
          call follow_branches(self, log_suction(self, p_c, e), along, limited)
          sat%s_w = along%s_w
          sat%ds_dpc = along%slope/p_c
          sat%ds_de = along%slope*self%omega/e
-         return
+      else
+         sat = curve_saturation(self, p_c, e)
       end if
+   end function saturation
+
+   !> Saturation without hysteresis.
+   pure function curve_saturation(self, p_c, e) result(sat)
+      type(retention_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+      type(on_main_curve_t) :: at
+
+      sat = saturation_t(self%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
+      if (p_c <= 0.0_wp) return
       at = on_main_curve(self, main_curve_t(0.0_wp, self%n_x, self%m_x), log_suction(self, p_c, e))
       sat%s_w = at%s_w
       sat%ds_dpc = at%slope/p_c
       sat%ds_de = at%slope*self%omega/e
       sat%share = at%share
       sat%log_sum = at%log_sum
-   end function saturation
+   end function curve_saturation
 
    !> Finds beforehand what every increment would look for: the least offsets of the branches.
    pure subroutine prepare_retention(self)
@@ -329,8 +339,7 @@ contains
 
       log_suction = NO_SUCTION
       if (p_c <= 0.0_wp) return
-      log_suction = log(p_c/self%p_a)
-      if (self%omega > 0.0_wp) log_suction = log_suction + self%omega*log(e)
+      log_suction = log(p_c/self%p_a) + self%omega*log(e)
    end function log_suction
 
    !> q of y**q = x**q + offset**q. docs/theory/material.md section 2.1.1.

@@ -17,6 +17,8 @@ module mud_direction
    implicit none (type, external)
    private
    public :: find_direction
+   public :: angle_t, bracket_t, PARALLEL, MAX_ITERATIONS, ALONE, half_tangent, first_guess, vanishes, narrow, &
+             is_narrow, advance, evaluate_direction, slope_of_residual, company_of   ! for several points at a time
 
    real(wp), parameter :: PARALLEL = 1.0e-13_wp          !< r normal to t below this share of r is rounding [-].
    real(wp), parameter :: ROOT_TOLERANCE = 1.0e-14_wp    !< Tolerance of the direction equation, share of its terms [-].

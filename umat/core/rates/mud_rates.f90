@@ -19,6 +19,7 @@ module mud_rates
    implicit none (type, external)
    private
    public :: rate_at, conditions_t, stress_ratio, p_follows, MODE_ORDINARY, MODE_ELASTIC
+   public :: evaluate_point, weight_at, hardening_at, find_drive, finish_rate, is_certain   ! for several points
 
    integer, parameter :: MODE_ORDINARY = 0   !< Both mechanisms act.
    integer, parameter :: MODE_ELASTIC = 1    !< L = 0: inside the elastic domain.
