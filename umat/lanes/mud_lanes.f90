@@ -5,6 +5,7 @@ module mud_lanes
    use, intrinsic :: iso_c_binding, only: c_ptr, c_loc
    use mud_blocks, only: blocks_t
    use mud_consistent, only: sensitivity_t, no_sensitivity
+   use mud_event, only: EVENT_NONE
    use mud_follow, only: follow_phase, follow_substep
    use mud_increment, only: increment_t, rate_of, take_phase
    use mud_integration, only: integration_t
@@ -140,7 +141,9 @@ contains
          if (.not. of(j)%together) cycle
          call begin_mechanism(par, it(j)%state, it(j)%inc, it(j)%trial, it(j)%known)
          call take_increment(j, it(j)%inc, q)
-         of(j)%asks = .not. (it(j)%known .or. it(j)%state%open .or. it(j)%inc%inside .or. it(j)%trial%drifts)
+         ! rates of one point placed an event, and they alone are sure to be on the same side of it
+         of(j)%asks = .not. (it(j)%known .or. it(j)%state%open .or. it(j)%inc%inside .or. it(j)%trial%drifts .or. &
+                             it(j)%event /= EVENT_NONE)
          if (.not. of(j)%asks) cycle
          y(1:6) = it(j)%state%sigma
          y(Y_Z:Y_Z_END) = it(j)%state%z
