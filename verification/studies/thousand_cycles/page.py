@@ -17,7 +17,7 @@ PAGE = Page(
           "at 25 Hz (`study.py`)",
     reference="without the rule: the library on the same paths; for drained cycles the HCA model of material/drained_cycles",
     seconds=30, quick=6)
-MAKES = (Script("study.py", ("results.csv", "foundation.csv"), 300),)
+MAKES = (Script("study.py", ("results.csv", "foundation.csv"), 700),)
 
 SAME = Tolerance("two integrations, at 1e-4 and 1e-5 a substep", relative=5e-3)
 FRAME = Tolerance("stress-led substeps are solved to 1e-10, component by component, and the places of events follow", absolute=1e-5)

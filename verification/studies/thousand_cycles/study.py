@@ -356,7 +356,7 @@ def results():
     tables.write(HERE / "results.csv", COLUMNS, lines)
 
 
-TURNS = (1, 2, 5, 10, 20, 30, 50, 70, 100)
+TURNS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 PERIOD, STEPS, LOADED = 0.04, 20, 2.0
 # A foundation of 1 m diameter under 30 +- 15 kN at 25 Hz on dry Toyoura sand, e 0.8.
 SCENE = f"""&scene name='foundation' fields='u' gravity=9.81 threads=1 /
