@@ -4,19 +4,18 @@ module region_builder
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use exit_codes, only: EXIT_GROUP
-   use key_schema, only: line_of, get_text, REQUIRED, UNBOUNDED
+   use key_schema, only: line_of, get_text, given, REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use material_mud, only: mud_t
    use material_point, only: material_t, material_slot_t
    use material_registry, only: new_material
    use model_types, only: model_t, given_region_t, curve_t
    use name_search, only: mesh_group, defined_name
-   use namelists, only: group_t
+   use namelists, only: group_t, set_entry
    use permeability_laws, only: permeability_t
    use porous_domain, only: region_t, COUPLED, DRY
    use retention_groups, only: new_retention
    use scene_parts, only: place_of
-   use scene_tolerances, only: ask_stress
    use scene_types, only: item_of
    use texts, only: whole, LENGTH
    implicit none (type, external)
@@ -24,6 +23,9 @@ module region_builder
    public :: build_retention, build_permeability, build_material, build_region
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
+   real(wp), parameter :: STRESS_SHARE = 0.1_wp   !< Tolerance of MUD's stress integration as a share of the steps'.
+   real(wp), parameter :: STRESS_LEAST = 1.0e-10_wp, STRESS_LARGEST = 1.0e-3_wp   !< Its bounds.
+   real(wp), parameter :: TIGHT = 1.0e-3_wp       !< Below it the scheme of order 3 costs less.
    !> Names of no curve: the material has a retention of its own. The second is that of older scenes.
    character(8), parameter :: OF_THE_MATERIAL(2) = [character(8) :: 'material', 'mud']
 contains
@@ -78,6 +80,21 @@ contains
       if (fault%code == 0) call check_tangent(material, at_line(group%file, line_of(group, 'tangent')), fault)
       if (fault%code == 0) model%materials = [model%materials, material]
    end subroutine build_material
+
+   !> What the tolerance of the steps asks of the keys that a material leaves out: tolerance and scheme of MUD; nothing
+   !> of other laws. docs/theory/host.md section 4.5.
+   subroutine ask_stress(tolerance, group)
+      real(wp), intent(in) :: tolerance   !< Of the scene [-]; 0: nothing.
+      type(group_t), intent(inout) :: group
+      character(16) :: text
+
+      if (.not. tolerance > 0.0_wp .or. group%name /= 'mud') return
+      if (.not. given(group, 'tolerance')) then
+         write (text, '(es10.3)') min(STRESS_LARGEST, max(STRESS_LEAST, STRESS_SHARE*tolerance))
+         call set_entry(group, 'tolerance', trim(adjustl(text)))
+      end if
+      if (.not. given(group, 'scheme') .and. tolerance < TIGHT) call set_entry(group, 'scheme', '2')
+   end subroutine ask_stress
 
    !> Newton's method needs slopes.
    subroutine check_tangent(material, place, fault)

@@ -12,7 +12,6 @@ module stage_builder
    use model_types, only: model_t
    use number_pairs, only: read_pairs
    use scene_parts, only: amplitude_t, stage_t, acts_in, place_of
-   use scene_tolerances, only: ask_steps
    use scene_types, only: item_of
    use texts, only: short, LENGTH
    implicit none (type, external)
@@ -21,6 +20,9 @@ module stage_builder
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    integer, parameter :: MANY = 1000000
+   real(wp), parameter :: DEFAULT_TOLERANCE = 1.0e-3_wp  !< Of stages without dt in scenes that give none.
+   real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the steps'.
+   real(wp), parameter :: NEWTON_LARGEST = 1.0e-4_wp     !< Its bound: the residuals of all steps add up.
    real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of a time, relative to the length of a history.
    real(wp), parameter :: SMOOTH = 0.8_wp     !< rho_inf of a stage without contact.
    real(wp), parameter :: OPENING = 0.0_wp    !< With contact: no energy is gained where a penalty opens and closes
@@ -129,7 +131,7 @@ contains
                    'fields are written every so many steps; 0: at the end; without: controlled steps at 50 times')
       if (k%lists) return
       stage%film = .not. (k%given('fields') .or. k%given('output_dt'))
-      call ask_steps(k%group, model%step_tolerance, steps == 2, stage, fault)
+      call ask_steps(k, model%step_tolerance, steps == 2, stage, fault)
       if (k%given('step_ends')) call read_pairs(trim(ends), trim(k%group%file), k%group%line, &
                                                 'the end of a step and its length [s]', stage%ends, lengths, fault)
       if (fault%code == 0 .and. k%given('step_ends')) then
@@ -140,6 +142,25 @@ contains
       end if
       model%stages = [model%stages, stage]
    end subroutine build_stage
+
+   !> What the tolerance of the scene asks of the keys that a stage leaves out: steps, and Newton's tolerance.
+   !> docs/theory/host.md section 4.5. Fault EXIT_INPUT: steps = "given" without dt.
+   subroutine ask_steps(k, tolerance, by_error, stage, fault)
+      type(key_table_t), intent(in) :: k
+      real(wp), intent(in) :: tolerance  !< Of the scene; 0: not given.
+      logical, intent(in) :: by_error    !< The key steps says it.
+      type(stage_t), intent(inout) :: stage
+      type(fault_t), intent(inout) :: fault
+
+      stage%step_tolerance = tolerance
+      if (.not. tolerance > 0.0_wp) stage%step_tolerance = DEFAULT_TOLERANCE
+      stage%controlled = tolerance > 0.0_wp .or. .not. k%given('dt')
+      if (k%given('steps')) stage%controlled = by_error
+      if (.not. (k%given('dt') .or. stage%controlled)) call raise(fault, EXIT_INPUT, at_line(k%group%file, &
+         k%group%line)//'&stage with steps = ''given'' needs dt [s].')
+      if (stage%controlled .and. .not. k%given('tolerance')) &
+         stage%tolerance = min(NEWTON_LARGEST, NEWTON_SHARE*stage%step_tolerance)
+   end subroutine ask_steps
 
    !> Places histories whose times count from stages in the time of the run, anew at the start of each of these stages.
    !> docs/theory/host.md section 7.2. Fault EXIT_INPUT: a history lasts beyond the start of the stage that it begins
