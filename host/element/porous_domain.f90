@@ -88,7 +88,6 @@ module porous_domain
       integer, allocatable :: center(:)               !< Node of an undrained element, in no other; else 0.
       real(wp), allocatable :: given(:, :)            !< (2, nodes) p_w, p_c at the start, where a region is drained or
                                                       !< undrained; of centers the mean over the element.
-      integer, allocatable :: open_nodes(:)           !< Where coupled and drained regions meet.
       integer, allocatable :: before_state(:)         !< (elements + 1) State variables before those of an element.
       type(gauss_t), allocatable :: gauss(:, :)       !< (rule, elements)
       integer :: threads = 1
@@ -191,7 +190,6 @@ contains
       integer :: e
 
       if (.not. allocated(domain%center)) allocate (domain%center(size(domain%mesh%t6, 2)), source=0)
-      if (.not. allocated(domain%open_nodes)) allocate (domain%open_nodes(0))
       domain%carriers = domain%mesh%t6
       if (allocated(domain%n_carriers)) deallocate (domain%n_carriers)
       allocate (domain%n_carriers(size(domain%mesh%t6, 2)), source=domain%n_p)

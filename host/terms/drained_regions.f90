@@ -5,9 +5,9 @@
 module drained_regions
    use kinds, only: wp
    use faults, only: fault_t
-   use given_pressures, only: pressures_at_start, nodes_with_flow
+   use given_pressures, only: pressures_at_start
    use model_types, only: model_t
-   use porous_domain, only: domain_t, DRAINED, UNDRAINED
+   use porous_domain, only: domain_t, is_present, DRAINED, UNDRAINED
    use scene_term, only: scene_term_t
    use solution, only: solution_t
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
@@ -31,23 +31,18 @@ contains
       if (there) call give_pressures(model)
    end subroutine build
 
-   !> Pressures that are no unknowns, and the nodes where an unknown meets them. docs/theory/host.md section 3.5. Sets
-   !> `given` [kPa] and open_nodes of the domain.
+   !> Pressures that are no unknowns. docs/theory/host.md section 3.5. Sets `given` of the domain [kPa].
    subroutine give_pressures(model)
       type(model_t), intent(inout) :: model
-      logical, dimension(size(model%domain%mesh%x, 2)) :: flows, drains
-      integer :: e, i
+      integer :: e
 
       associate (domain => model%domain)
          domain%given = pressures_at_start(model)
-         flows = nodes_with_flow(domain)
-         drains = .false.
          do e = 1, size(domain%region_of)
             associate (nodes => domain%mesh%t6(:, e))
                ! The middle of a side lies between the ends where pressures are linear.
                if (domain%n_p == 3) domain%given(:, nodes(4:6)) = &
                   0.5_wp*(domain%given(:, nodes(1:3)) + domain%given(:, nodes([2, 3, 1])))
-               if (domain%regions(domain%region_of(e))%drainage == DRAINED) drains(nodes(:domain%n_p)) = .true.
             end associate
          end do
          do e = 1, size(domain%region_of)
@@ -55,26 +50,31 @@ contains
             if (domain%center(e) > 0) &
                domain%given(:, domain%center(e)) = sum(domain%given(:, domain%mesh%t6(4:6, e)), dim=2)/3
          end do
-         domain%open_nodes = pack([(i, i=1, size(drains))], drains .and. flows)
       end associate
    end subroutine give_pressures
 
-   !> Where drained regions begin pressures are theirs, but for those of a &fix.
+   !> Where drained ground begins that is there, pressures are its own, but for those of a &fix.
    subroutine prescribe(self, model, time, solution)
       class(drained_regions_t), intent(in) :: self
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time
       type(solution_t), intent(inout) :: solution
-      integer :: i, k, at
+      integer :: e, i, k, at
 
       associate (domain => model%domain, c => solution%constraint)
-         do k = 1, size(domain%open_nodes)
-            do i = AT_P_W, AT_P_C
-               at = model%dofs%of(i, domain%open_nodes(k))
-               if (at == 0) cycle
-               if (c%fixed(at)) cycle
-               c%fixed(at) = .true.
-               c%target(at) = domain%given(i - DISPLACEMENTS, domain%open_nodes(k))
+         do e = 1, size(domain%region_of)
+            if (domain%regions(domain%region_of(e))%drainage /= DRAINED) cycle
+            if (.not. is_present(solution%state, e)) cycle
+            do k = 1, domain%n_p
+               associate (node => domain%mesh%t6(k, e))
+                  do i = AT_P_W, AT_P_C
+                     at = model%dofs%of(i, node)
+                     if (at == 0) cycle
+                     if (c%fixed(at)) cycle
+                     c%fixed(at) = .true.
+                     c%target(at) = domain%given(i - DISPLACEMENTS, node)
+                  end do
+               end associate
             end do
          end do
       end associate

@@ -13,7 +13,7 @@ WORDS = {
     "absorbing": (r"absorb", None),
     "buffer": (r"\bbuffer", None),
     "contact_drainage": (r"contact_drainage|of_drainage|drains|impervious|gives_way", None),
-    "drained_regions": (r"drained_regions|give_pressures|follow_undrained|open_nodes", None),
+    "drained_regions": (r"drained_regions|give_pressures|follow_undrained", None),
     "friction": (r"friction", "contact"),
     "plane_plates": (r"plane_(plates|motion)|in_plane|\b(rotation|moment|lever)\b|turn_(node|group)", None),
     "run_off": (r"run_off\b|limit_pressures|ponding|rain_at|check_rain", None),

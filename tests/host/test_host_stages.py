@@ -112,6 +112,35 @@ def test_new_ground_brings_its_water():
     check("nothing happens before", abs(rows["low.p_c"][1] - 5) < 1e-9, rows["low.p_c"][1])
 
 
+LEAKS = """&scene name = 'leaks' geometry = 'plane_strain' fields = 'u-p_w' /
+&mesh r = 0, 1, 2 r_cells = 2, 2 z = 0, 1 z_cells = 2 /
+&elastic name = 'soil' young = 1e4 poisson = 0.2 /
+&permeability name = 'k' intrinsic = 1e-10 /
+&region group = 'block_1_1' material = 'soil' void_ratio = 0.5 permeability = 'k' /
+&region group = 'block_2_1' material = 'soil' void_ratio = 0.5 drainage = 'drained' stages = {} /
+&stage name = 'one' analysis = 'quasi_static' duration = 10 dt = 1 tolerance = 1e-9 /
+&stage name = 'two' analysis = 'quasi_static' duration = 10 dt = 1 tolerance = 1e-9 /
+&fix group = 'all' field = 'u_r' /
+&fix group = 'all' field = 'u_z' /
+&load group = 'left' kind = 'water' value = 1e-7 /
+&point name = 'left' r = 0 z = 0.5 /
+"""
+
+
+def test_drained_ground_takes_water_while_it_is_there():
+    # The ground stands still, so that 1e-7 m/s for 10 s on 1 m2 stay in a third of 1 m3 with k_w = 2.2e6 kPa, 6.6 kPa,
+    # unless they flow into the drained ground beside it: then p_w is linear, 1e-7 m/s over 1e-4 m2/(kPa s), 1e-3 kPa.
+    held, flows = 1e-7*10*2.2e6*3, 1e-3
+    for stages, wanted in (("'one', 'two'", (flows, flows)), ("'one'", (flows, flows + held)),
+                           ("'two'", (held, flows))):
+        rows = run("leaks", LEAKS.format(stages))
+        if rows is None:
+            continue
+        p_w = rows["left.p_w"][rows["time"] == 10][0], rows["left.p_w"][-1]
+        for k in (0, 1):
+            check(f"drained ground in {stages}, stage {k + 1}", abs(p_w[k]/wanted[k] - 1) < 1e-3, (p_w, wanted))
+
+
 def test_gravity_that_grows_after_the_cut():
     # Elastic: the end does not depend on the order of the lifts' weights and of the growth of gravity.
     def spun(name, time, *pairs):
