@@ -293,9 +293,13 @@ contains
       real(wp), intent(in) :: statev(:)
       integer, intent(in) :: entry
       type(mud_status_t), intent(inout) :: status
+      real(wp), parameter :: ALL_WHOLE = 1.0_wp/epsilon(1.0_wp)   ! From here on numbers have no fraction.
+      real(wp) :: x
 
       if (status%code /= 0) return
-      if (abs(statev(entry) - anint(statev(entry))) <= 0.0_wp) return
+      x = abs(statev(entry))
+      if (x >= ALL_WHOLE) return
+      if (abs(((x + ALL_WHOLE) - ALL_WHOLE) - x) <= 0.0_wp) return   ! rounds without a call
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), -huge(1.0_wp), huge(1.0_wp))
    end subroutine require_whole
 
