@@ -29,8 +29,9 @@ module key_schema
       character(240) :: words = ''       !< Kinds w, W: the words, divided by |; n: words that stand for a number.
       character(8) :: unit = ''          !< Shown behind the range, where the meaning does not say it.
       integer :: values = 0              !< Number of values of a list, 0: any number.
-      !> Conditions of its effect, between blanks: `key=word|word` another key has one of these words or none, `+key`
-      !> another key is given, `-key` it is not. Of a condition that begins with `:` the program knows whether it holds.
+      !> Conditions of its effect, between blanks: `key=word|word` another key has one of these words or none,
+      !> `+key|key` one of other keys is given, `-key` it is not. Of a condition that begins with `:` the program knows
+      !> whether it holds.
       character(96) :: acts = ''
       character(16) :: refers = ''       !< Kind t: the group whose name it gives; 'material' stands for all laws.
    end type key_t
@@ -112,6 +113,7 @@ contains
       integer :: at
 
       why = ''
+      word = ''
       rest = trim(key%acts)
       do while (rest /= '' .and. why == '')
          at = index(rest//' ', ' ')
@@ -120,7 +122,7 @@ contains
          other = condition(2:)
          select case (condition(1:1))
          case ('+')
-            if (.not. given(group, other)) why = ' without '//other
+            why = lacking(group, other)
          case ('-')
             if (given(group, other)) why = ' beside '//other
          case (':')
@@ -135,6 +137,25 @@ contains
          end select
       end do
    end function idle_reason
+
+   !> " without a or b" where a group gives none of some keys, divided by |; else empty.
+   pure function lacking(group, names) result(why)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: names
+      character(:), allocatable :: why
+      character(:), allocatable :: rest
+      integer :: at
+
+      why = ''
+      rest = names
+      do while (rest /= '')
+         at = index(rest//BETWEEN, BETWEEN)
+         why = why//trim(merge(' without', ' or     ', why == ''))//' '//rest(:at - 1)
+         if (given(group, rest(:at - 1))) exit
+         rest = rest(at + 1:)
+      end do
+      if (rest /= '') why = ''
+   end function lacking
 
    !> ", which takes eps_a_end, q_end": the keys that act with a word of another key and not with every one.
    pure function own_keys(keys, group, other, word) result(list)

@@ -198,7 +198,7 @@ contains
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
-            call probe_one(t, x, with_slopes, t%result, self%status)
+            call probe_one(t, x, with_slopes, .false., self%status)
             good = self%status%code == CONTACT_OK
             if (.not. good) return
             if (allocated(t%plate%motion)) call gather_on_plate(t%geometry, t%result, t%plate%motion, &
@@ -232,7 +232,7 @@ contains
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
-            call probe_one(t, x, .false., t%probe, self%status)
+            call probe_one(t, x, .false., .true., self%status)
             good = self%status%code == CONTACT_OK
             if (.not. good) return
          end associate
@@ -240,16 +240,19 @@ contains
    end function probe
 
    !> One of them, with the friction that its step starts from. status: as of contact_evaluate.
-   subroutine probe_one(t, x, with_tangent, result, status)
+   subroutine probe_one(t, x, with_tangent, aside, status)
       type(contact_interface_t), intent(inout) :: t
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       logical, intent(in) :: with_tangent
-      type(contact_result_t), intent(inout) :: result
+      logical, intent(in) :: aside      !< The outcome goes to t%probe, not to t%result.
       type(contact_status_t), intent(out) :: status
       real(wp) :: at(2, size(t%master%x0, 2))
 
       if (allocated(t%spring)) then
-         call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), displacements_of_master(t, x), result)
+         if (aside) call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), &
+                                          displacements_of_master(t, x), t%probe)
+         if (.not. aside) call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), &
+                                                displacements_of_master(t, x), t%result)
          status = contact_status_t()
          return
       end if
@@ -262,8 +265,13 @@ contains
       else
          at = t%master%x0 + x(:DISPLACEMENTS, t%master%node)
       end if
-      call contact_evaluate(t%geometry, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), at, with_tangent, t%work, &
-                            result, status, t%friction)
+      if (aside) then
+         call contact_evaluate(t%geometry, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), at, with_tangent, t%work, &
+                               t%probe, status, t%friction)
+      else
+         call contact_evaluate(t%geometry, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), at, with_tangent, t%work, &
+                               t%result, status, t%friction)
+      end if
    end subroutine probe_one
 
    !> Displacements of the nodes of the master, or of the face of the plate [m].
@@ -296,7 +304,7 @@ contains
             t%slave_u = x(:DISPLACEMENTS, t%slave%node)
             t%master_u = displacements_of_master(t, x)
             t%friction%gap = 0.0_wp
-            call probe_one(t, x, .false., t%probe, self%status)
+            call probe_one(t, x, .false., .true., self%status)
             good = self%status%code == CONTACT_OK
             if (.not. good) return
             t%friction%gap = t%probe%gap
@@ -328,7 +336,7 @@ contains
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
             if (.not. allocated(t%friction) .or. .not. t%acts) cycle
-            call probe_one(t, x, .false., t%probe, self%status)
+            call probe_one(t, x, .false., .true., self%status)
             ! What a step has ended with, no kernel refuses.
             if (self%status%code /= CONTACT_OK) cycle
             dissipated = dissipated + slid_work(t%geometry%options, t%friction, t%probe)

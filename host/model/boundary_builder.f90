@@ -51,9 +51,9 @@ contains
                      'corners r, z, r, z, ... of its own face, the plate on the left; or r [m]', 'motion=plane')
       call k%number('mass', plate%mass, TINY_, BIG, 'mass of the plate [Mg]', REQUIRED)
       call k%flag('weight', plate%heavy, 'no|yes', 'yes', &
-                  'the weight acts, and the plate starts in balance on its contact')
+                  'the weight acts, and the plate starts in balance on its contact', ':gravity')
       call k%number('force', plate%force, -BIG, BIG, 'force on the plate, upwards [kN]')
-      call k%text('history', history, 'factor on the forces', refers='history')
+      call k%text('history', history, 'factor on the forces', '+force|force_r|moment', refers='history')
       if (k%lists) return
       plate%scene_item_t = item_of(k%group)
       if (count([k%given('group'), k%given('r'), k%given('outline')]) /= 1) then
@@ -158,9 +158,11 @@ contains
                     'above a water table p_c grows no further [kPa]', '+water_table')
       call k%number('saturation', initial%saturation, 1.0e-6_wp, ONE, &
                     'S_w between the main curves, with hysteresis [-]; default: on the main drying curve', ':p_c')
-      call k%number('datum', initial%datum, -BIG, BIG, 'z of the datum [m]')
+      call k%number('datum', initial%datum, -BIG, BIG, 'z of the datum [m]', &
+                    '+p_w_slope|p_c_slope|wave')
       call k%number('v_z', initial%v_z, -BIG, BIG, 'vertical velocity at the start [m/s]')
-      call k%number('wave', initial%wave, -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]')
+      call k%number('wave', initial%wave, -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]', &
+                    '+wave_number')
       call k%number('wave_number', initial%wave_number, ZERO, BIG, 'see wave [1/m]', '+wave')
       stress = 1
       call k%word('stress', stress, 'none|uniform|geostatic', 'effective stress at the start')
@@ -173,7 +175,7 @@ contains
       call k%number('surcharge', initial%surcharge, ZERO, BIG, 'geostatic: pressure on it [kPa]', 'stress=geostatic')
       call k%number('k_0', initial%k_0, ZERO, 10*ONE, 'geostatic: horizontal over vertical stress', 'stress=geostatic')
       call k%flag('k_0_of', initial%net, 'net|effective', 'net', 'stress that K_0 acts on where p_c > 0', &
-                  'stress=geostatic')
+                  'stress=geostatic :p_c')
       if (k%lists) return
       initial%scene_item_t = item_of(k%group)
       initial%with_table = k%given('water_table')
@@ -218,7 +220,7 @@ contains
       call k%number('value', fix%value, -BIG, BIG, 'prescribed value, at the datum [m, kPa]', 'hold=no')
       call k%number('value_slope', fix%value_slope, -BIG, BIG, 'change of the value with z [-, kPa/m]', 'hold=no')
       call k%number('datum', fix%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
-      call k%text('history', history, 'factor on the value', 'hold=no', refers='history')
+      call k%text('history', history, 'factor on the value', 'hold=no +value|value_slope', refers='history')
       call k%flag('hold', fix%hold, 'no|yes', 'yes', 'yes: held at its value at the start of the stage')
       call k%flag('motion', fix%acceleration, 'value|acceleration', 'acceleration', &
                   'what the value of u_r, u_z is: displacement, or acceleration [m/s2]')
@@ -357,7 +359,8 @@ contains
       second_name = ''
       call k%text('first', first_name, 'first boundary: nodes at equal heights move together', REQUIRED)
       call k%text('second', second_name, 'second boundary, with nodes at the same heights', REQUIRED)
-      call k%flag('pressures', tie%pressures, 'no|yes', 'yes', 'pore pressures of the nodes are equal as well')
+      call k%flag('pressures', tie%pressures, 'no|yes', 'yes', 'pore pressures of the nodes are equal as well', &
+                  ':p_w')
       if (k%lists) return
       place = at_line(k%group%file, k%group%line)
       second = 0

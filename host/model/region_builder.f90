@@ -135,9 +135,10 @@ contains
                   'fluids flow, stay at given pressures, stay in every element, or are absent', ':p_w')
       call k%number('rho_s', region%rho_s, ZERO, 1000*ONE, 'density of the grains [Mg/m3]')
       call k%number('void_ratio', region%void_ratio, ZERO, 10*ONE, 'initial void ratio [-]; default: the material''s')
-      call k%number('damping', region%damping, ZERO, BIG, 'force against the velocity over mass, dynamic stages [1/s]')
+      call k%number('damping', region%damping, ZERO, BIG, &
+                    'force against the velocity over mass, dynamic stages [1/s]', ':dynamic')
       call k%number('stiffness_damping', region%stiffness_damping, ZERO, BIG, &
-                    'stress of the skeleton from its rate, dynamic stages [s]')
+                    'stress of the skeleton from its rate, dynamic stages [s]', ':dynamic')
       if (k%lists) return
       given%scene_item_t = item_of(k%group)
       given%rest = .not. k%given('group')

@@ -108,7 +108,7 @@ contains
       call k%text('step_ends', ends, 'given steps: file with the end of every step since the start of the stage '// &
                   'and its length [s]', 'steps=given')
       call k%number('output_dt', stage%output_dt, TINY_, BIG, &
-                    'controlled steps end at multiples of it, with fields [s]')
+                    'controlled steps end at multiples of it, with fields [s]', ':controlled')
       call k%number('dt_growth', stage%dt_growth, ONE, 10*ONE, 'factor on the step after every accepted one')
       call k%number('dt_max', stage%dt_max, TINY_, BIG, 'largest step with dt_growth [s]', '+dt_growth')
       call k%whole('cuts', stage%cuts, 0, 40, 'how often a step may be halved')
@@ -117,7 +117,8 @@ contains
                     'analysis=quasi_static|dynamic')
       call k%number('created_energy', stage%created_energy, TINY_, BIG, &
                     'energy created out of nothing that ends the run, share of the largest work [-]')
-      call k%number('tolerance', stage%tolerance, 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the iteration [-]')
+      call k%number('tolerance', stage%tolerance, 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the '// &
+                    'iteration [-]; what is left after contact is lost depends on it by per cents, see host/SCENE.md')
       call k%word('measure', stage%measure, 'forces|residual|correction|change|auto', &
                   'measure of the error that ends the iteration, see host/SCENE.md')
       call k%whole('max_iterations', stage%max_iterations, 1, 1000, 'Newton: linear solves before the step is cut')

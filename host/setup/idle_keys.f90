@@ -2,7 +2,8 @@
 !> Keys of a scene that change nothing because another key says so, and definitions that nobody uses.
 module idle_keys
    use faults, only: at_line
-   use generalised_alpha, only: has_rates
+   use generalised_alpha, only: has_rates, DYNAMIC
+   use kinds, only: wp
    use key_schema, only: key_t, idle_reason, get_text, given, line_of, place_of
    use material_registry, only: is_law
    use model_types, only: model_t
@@ -47,6 +48,13 @@ contains
       why = idle_reason(keys, key, group)
       if (index(key%acts, ':time') > 0 .and. .not. any(has_rates(model%stages%kind))) then
          why = ': every stage is static and has no time; analysis = ''quasi_static'' of &stage has'
+      else if (index(key%acts, ':dynamic') > 0 .and. .not. any(model%stages%kind == DYNAMIC)) then
+         why = ': no stage is dynamic'
+      else if (index(key%acts, ':gravity') > 0 .and. .not. model%domain%gravity > 0.0_wp) then
+         why = ' without gravity of &scene'
+      else if (index(key%acts, ':controlled') > 0 .and. .not. any(model%stages%controlled .and. &
+               model%stages%name == name_of(group))) then
+         why = ' on steps that are given; leave out dt, or give steps = ''controlled'''
       else if (index(key%acts, ':p_w') > 0 .and. .not. model%domain%with_w) then
          why = ': the scene has no field p_w'
       else if (index(key%acts, ':p_c') > 0 .and. .not. model%domain%with_c) then

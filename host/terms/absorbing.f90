@@ -77,7 +77,7 @@ contains
                     'speed of shear waves behind the boundary [m/s]; default: the soil''s')
       call k%number('v_r', side%velocity(1), -UNBOUNDED, UNBOUNDED, 'velocity along r of the incoming wave [m/s]')
       call k%number('v_z', side%velocity(2), -UNBOUNDED, UNBOUNDED, 'velocity along z of the incoming wave [m/s]')
-      call k%text('history', history, 'factor on v_r and v_z', refers='history')
+      call k%text('history', history, 'factor on v_r and v_z', '+v_r|v_z', refers='history')
       call k%texts('stages', side%stages, 'names of stages; default: all')
       if (k%lists) return
       side%scene_item_t = item_of(k%group)

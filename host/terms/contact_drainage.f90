@@ -42,7 +42,7 @@ contains
 
       follows = .false.
       call k%flag('drainage', follows, 'fixed|state', 'state', &
-                  'state: nodes in contact are released from &fix of pressures')
+                  'state: nodes in contact are released from &fix of pressures', ':p_w')
       if (k%lists) return
       if (.not. allocated(self%follows)) then
          allocate (self%follows(size(model%contacts)), source=.false.)

@@ -35,7 +35,8 @@ contains
       call k%number('friction', options%friction, 0.0_wp, 100.0_wp, 'coefficient of Coulomb friction [-]')
       call k%number('cohesion', options%cohesion, 0.0_wp, UNBOUNDED, 'shear stress that friction adds to [kPa]')
       call k%number('tangential_penalty', options%tangential_penalty, 0.0_wp, UNBOUNDED, &
-                    'shear stress of a unit of slip before it slides [kN/m3]; 0: a tenth of the penalty')
+                    'shear stress of a unit of slip before it slides [kN/m3]; 0: a tenth of the penalty', &
+                    '+friction|cohesion')
       if (.not. k%lists) model%contacts(number)%options = options
    end subroutine build_group
 

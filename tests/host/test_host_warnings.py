@@ -61,6 +61,19 @@ DOUBTS = [
     ("key beside a file", "name = 'h'", "name = 'h' file = 'h.txt'", ["times of &history has no effect beside file"]),
     ("key of a static stage", "'quasi_static'", "'static'", ["rho_inf of &stage has no effect"]),
     ("key of a field", "'u-p_w'", "'u'", ["p_w_slope of &initial has no effect: the scene has no field p_w"]),
+    ("key of a dynamic stage", "0.8 permeability", "0.8 damping = 3 permeability",
+     ["damping of &region has no effect: no stage is dynamic"]),
+    ("datum of no slope", "p_w_slope = -9.81", "p_w = -3 datum = 1",
+     ["datum of &initial has no effect without p_w_slope or p_c_slope or wave"]),
+    ("wave of no length", "surcharge = 0.5", "surcharge = 0.5 wave = 0.1",
+     ["wave of &initial has no effect without"]),
+    ("stress of no suction", "surcharge = 0.5", "surcharge = 0.5 k_0_of = 'effective'",
+     ["k_0_of of &initial has no effect"]),
+    ("history of no value", "&fix group = 'left' field = 'u_r'", "&fix group = 'left' field = 'u_r' history = 'h'",
+     ["history of &fix has no effect without value or value_slope"]),
+    ("output of given steps", "dt = 0.5", "dt = 0.5 output_dt = 1",
+     ["output_dt of &stage has no effect on steps that"]),
+    ("reference of a constant gas", "rho_w = 1", "rho_w = 1 p_ref = 90", ["p_ref of &fluids has no effect"]),
     ("definition of nobody", "&fix group = 'left'", "&retention name = 'x' /\n&fix group = 'left'",
      ["&retention 'x' has no effect", "no group names it as its retention"]),
     ("unit of a density", "rho_w = 1 ", "rho_w = 1000 ", ["scene.nml:5: rho_w = 1000 of &fluids", "Mg/m3 (water 1)"]),
@@ -232,7 +245,7 @@ def test_a_failure_names_sand_without_stress():
     # Sand without stress: where Newton's method fails for it, the cause is named.
     bare = SCENE.replace("stress = 'geostatic' surface = 0 surcharge = 0.5", "")
     bare = bare.replace("dt = 0.5", "dt = 0.5 cuts = 0")
-    bare = bare.replace("value = 5 history", "value = 500 history").replace("'quasi_static'", "'static'").replace(
+    bare = bare.replace("value = 5 history", "value = 5000 history").replace("'quasi_static'", "'static'").replace(
         " rho_inf = 0", "")
     (work / "scene.nml").write_text(bare)
     done = subprocess.run([host, work / "scene.nml", "--quiet", "--output", work / "out"],

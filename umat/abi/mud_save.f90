@@ -196,7 +196,7 @@ contains
       call read_params(props, par, status)
       if (status%code /= MUD_OK) return
       preset = read_preset(par%suction%retention_t, statev(S_SATURATION))
-      call kernel_begin(par, stress, suction, statev(S_VOID_RATIO), statev, report, preset)
+      call kernel_begin(par, stress, suction, (statev(S_VOID_RATIO)), statev, report, preset)
    end subroutine begin_as_umat
 
    !> Seventeen digits: the same bits when they are read again. A minus zero loses its sign. At fixed length: gfortran

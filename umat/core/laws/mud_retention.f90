@@ -586,6 +586,7 @@ contains
       type(retention_t), intent(in) :: self
       type(path_t), intent(in) :: path
       type(retention_t) :: branch
+      type(branch_t) :: begun
       integer :: k
       logical :: dries
 
@@ -602,8 +603,9 @@ contains
       branch%scanning%branches(1) = raw_branch(self, dries, path%turns%log_x(1), path%turns%s_w(1))
       do k = 2, path%turns%depth
          dries = .not. dries
-         branch%scanning%branches(k) = raw_branch(self, dries, path%turns%log_x(k), path%turns%s_w(k))
-         call close_loop(branch, path%turns%log_x(k - 1), path%turns%s_w(k - 1), branch%scanning%branches(k))
+         begun = raw_branch(self, dries, path%turns%log_x(k), path%turns%s_w(k))
+         call close_loop(branch, path%turns%log_x(k - 1), path%turns%s_w(k - 1), begun)
+         branch%scanning%branches(k) = begun
       end do
    end function branch_of
 
