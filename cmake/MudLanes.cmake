@@ -30,13 +30,13 @@ function(mud_add_lanes sources core)
 endfunction()
 
 # mud_copy_of_core(NAME PARTS OPTIONS)
-# Writes mud_NAME.F90, which includes the parts and calls a module mud_x of theirs NAME_x.
+# Writes mud_NAME.F90, which includes the parts and calls a module mud_x of theirs mud_of_NAME_x.
 function(mud_copy_of_core name parts options)
    list(TRANSFORM parts REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
    list(JOIN includes "" includes)
    set(unit ${CMAKE_CURRENT_BINARY_DIR}/mud_${name}.F90)
    file(CONFIGURE OUTPUT ${unit} CONTENT "${includes}" @ONLY)
-   list(TRANSFORM parts REPLACE ".*/(mud_([a-z_]+))[.]f90" "\\1=${name}_\\2" OUTPUT_VARIABLE names)
+   list(TRANSFORM parts REPLACE ".*/(mud_([a-z_]+))[.]f90" "\\1=mud_of_${name}_\\2" OUTPUT_VARIABLE names)
    list(TRANSFORM parts PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
    set_source_files_properties(${unit} PROPERTIES OBJECT_DEPENDS "${parts}" COMPILE_DEFINITIONS "${names}"
       COMPILE_OPTIONS "-march=x86-64-v3;${options}")
