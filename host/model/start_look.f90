@@ -3,6 +3,7 @@
 !> pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
+   use acting_places, only: nodes_of_ground
    use generalised_alpha, only: has_rates, has_inertia
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
@@ -31,6 +32,7 @@ contains
       call look_at_air(model)
       call look_at_water_outside(model)
       call look_at_velocity(model)
+      call look_at_dashpots(model)
       do i = 1, size(model%fixes)
          call look_at_motion(model, model%fixes(i))
       end do
@@ -122,6 +124,27 @@ contains
          end associate
       end do
    end subroutine look_at_velocity
+
+   !> Ground that joins or leaves in a dynamic stage where dashpots alone hold the rest upright.
+   subroutine look_at_dashpots(model)
+      type(model_t), intent(in) :: model
+      logical :: carried(DISPLACEMENTS, size(model%domain%mesh%x, 2)), pressed(size(model%domain%mesh%x, 2))
+      integer :: s, i
+
+      i = findloc(model%actions%damps, .true., dim=1)
+      if (i == 0 .or. .not. allocated(model%ground)) return
+      do s = 2, size(model%stages)
+         if (.not. has_inertia(model%stages(s)%kind)) cycle
+         if (all(model%ground(:, s) .eqv. model%ground(:, s - 1))) cycle
+         call find_carried(model, s, carried, pressed)
+         if (any(carried(AT_U_Z, :) .and. nodes_of_ground(model, s))) cycle
+         call print_warning('Regions join or leave with the dynamic stage '//trim(model%stages(s)%name)//', where '// &
+            'no &fix of u_z holds the ground: the dashpots of '//trim(model%actions(i)%what)//' do not carry the '// &
+            'change of weight, and the ground drifts for ever. Let them join or leave in a static stage, with a '// &
+            '&fix that is limited to it.')
+         return
+      end do
+   end subroutine look_at_dashpots
 
    !> Water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
    subroutine look_at_water_outside(model)

@@ -334,6 +334,29 @@ def test_a_velocity_that_the_first_stage_takes_away_is_told():
           not told(text.format("v_z = -2", rest.format("dynamic"))))
 
 
+def test_ground_that_leaves_above_dashpots_alone_is_told():
+    # In a dynamic stage the rest of the column rises for ever; a static one before it, or a support, holds it.
+    text = """&scene name = 'pit' gravity = 10 /
+&mesh r = 0, 1 r_cells = 1 z = -1, -0.5, 0 z_cells = 1, 1 /
+&elastic name = 'e' young = 1e4 poisson = 0.2 /
+&region group = 'block_1_1' material = 'e' void_ratio = 0 rho_s = 2 /
+&region group = 'block_1_2' material = 'e' void_ratio = 0 rho_s = 2 stages = {} /
+&initial stress = 'geostatic' surface = 0 k_0 = 0.25 /
+&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'dig' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'shake' analysis = 'dynamic' duration = 0.01 dt = 1e-3 /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' stages = 'rest', 'dig'{} /
+&absorbing group = 'bottom' /
+"""
+    told = lambda text: [line for line in lines_of("pit", text) if "drifts for ever" in line]  # noqa: E731
+    said = told(text.format("'rest', 'dig'", ""))
+    check("it leaves while dashpots hold the rest", len(said) == 1 and "the dynamic stage shake" in said[0]
+          and "the dashpots of &absorbing" in said[0], said)
+    check("it leaves before", not told(text.format("'rest'", "")))
+    check("a support carries the rest", not told(text.format("'rest', 'dig'", ", 'shake'")))
+
+
 def test_pulses_that_are_over_and_plates():
     text = """&scene name = 'lwd' gravity = 10 /
 &mesh r = 0, 0.2, 1 r_cells = 1, 1 z = -1, 0 z_cells = 2 /
