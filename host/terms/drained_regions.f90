@@ -53,7 +53,8 @@ contains
       end associate
    end subroutine give_pressures
 
-   !> Where drained ground begins that is there, pressures are its own, but for those of a &fix.
+   !> Where drained ground begins that is there, pressures are its own, but for those of a &fix. The suction of an
+   !> undrained element without air stays: no balance of air says what it is.
    subroutine prescribe(self, model, time, solution)
       class(drained_regions_t), intent(in) :: self
       type(model_t), intent(in) :: model
@@ -76,6 +77,15 @@ contains
                   end do
                end associate
             end do
+         end do
+         if (domain%fluids%henry > 0.0_wp) return
+         do e = 1, size(domain%center)
+            if (domain%center(e) == 0) cycle
+            at = model%dofs%of(AT_P_C, domain%center(e))
+            if (at == 0) cycle
+            if (any(solution%state%s((e - 1)*domain%rule + 1:e*domain%rule) < 1.0_wp)) cycle
+            c%fixed(at) = .true.
+            c%target(at) = solution%state%x(AT_P_C, domain%center(e))
          end do
       end associate
    end subroutine prescribe

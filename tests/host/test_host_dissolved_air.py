@@ -64,6 +64,23 @@ def test_closed_soil_is_an_undrained_element():
             check(f"closed and undrained: {column}", abs(one/two - 1) < 1e-7, (one, two))
 
 
+def test_a_saturated_undrained_element_has_no_air_to_balance():
+    # Pores full of water that dissolves no air: nothing says what the suction is, so it stays, and the water carries
+    # the load as it does in a scene without air.
+    rows = {}
+    for fields, pressures in (("u-p_w", "p_w = 199"), ("u-p_w-p_c", "p_w = 199 p_c = 0")):
+        text = CLOSED.replace("permeability = 'k' void", "drainage = 'undrained' void").replace(
+            f" henry = {HENRY}", "").replace("p_w = 199 p_c = 1", pressures).replace("u-p_w-p_c", fields)
+        if fields == "u-p_w":
+            text = text.replace(" retention = 'curve'", "")
+        rows[fields] = tables.numbers(work / fields / "histories.csv")[-1] if ran(fields, text) else None
+    if all(rows.values()):
+        for column in ("top.p_w", "top.s_zz", "top.u_z"):
+            one, two = rows["u-p_w"][column], rows["u-p_w-p_c"][column]
+            check(f"with and without air: {column}", abs(one/two - 1) < 1e-6, (one, two))
+        check("it has no suction", rows["u-p_w-p_c"]["top.p_c"] == 0.0, rows["u-p_w-p_c"])
+
+
 def test_a_tight_tolerance_is_met_at_any_step():
     # What the rounding of saturation leaves of its rate grows as steps shrink; it is no error of Newton's method.
     for dt in (0.05, 0.002):
