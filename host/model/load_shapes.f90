@@ -33,18 +33,17 @@ contains
    !> Vectors of unit loads. (unknowns) of every load, per unit of its value: docs/theory/host.md section 7.2.
    subroutine shape_loads(model)
       type(model_t), intent(inout) :: model
+      real(wp) :: shape(model%dofs%n)
       integer :: i
 
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
-            if (allocated(load%shape)) deallocate (load%shape)
+            call shape_load(model, load, 1.0_wp, 0.0_wp, shape)
+            load%shape = shape
             if (allocated(load%rise)) deallocate (load%rise)
-            allocate (load%shape(model%dofs%n), source=0.0_wp)
-            call shape_load(model, load, 1.0_wp, 0.0_wp, load%shape)
-            if (abs(load%value_slope) > 0.0_wp) then
-               allocate (load%rise(model%dofs%n), source=0.0_wp)
-               call shape_load(model, load, -load%datum, 1.0_wp, load%rise)
-            end if
+            if (.not. abs(load%value_slope) > 0.0_wp) cycle
+            call shape_load(model, load, -load%datum, 1.0_wp, shape)
+            load%rise = shape
          end associate
       end do
    end subroutine shape_loads
@@ -54,11 +53,12 @@ contains
       type(model_t), intent(in) :: model
       type(load_t), intent(in) :: load
       real(wp), intent(in) :: base, slope
-      real(wp), intent(inout) :: shape(:)
+      real(wp), intent(out) :: shape(:)
       logical :: acts(size(model%domain%mesh%groups(load%group)%edges, 2))
       integer, allocatable :: edges(:, :)
       integer :: e, k, f
 
+      shape = 0.0_wp
       associate (group => model%domain%mesh%groups(load%group))
          if (load%kind < LOAD_FORCE_R) then
             acts = .true.

@@ -172,21 +172,22 @@ contains
       integer :: i
 
       do i = 1, size(model%amplitudes)
-         if (fault%code == 0 .and. size(model%amplitudes(i)%stages) > 0) call place(model, model%amplitudes(i), fault)
+         if (fault%code == 0 .and. size(model%amplitudes(i)%stages) > 0) &
+            call place(model%stages, model%amplitudes(i), fault)
       end do
    end subroutine place_histories
 
-   subroutine place(model, h, fault)
-      type(model_t), intent(in) :: model
+   subroutine place(stages, h, fault)
+      type(stage_t), intent(in) :: stages(:)
       type(amplitude_t), intent(inout) :: h
       type(fault_t), intent(inout) :: fault
-      logical :: named(size(model%stages))
+      logical :: named(size(stages))
       real(wp), allocatable :: times(:), values(:)
       integer, allocatable :: arcs(:)
       real(wp) :: start, length
       integer :: i, s, n
 
-      named = [(any(h%stages == model%stages(s)%name), s=1, size(named))]
+      named = [(any(h%stages == stages(s)%name), s=1, size(named))]
       n = size(h%times)
       if (count(named) > 1 .and. abs(h%values(n) - h%values(1)) > 0.0_wp) then
          call raise(fault, EXIT_INPUT, place_of(h)//'history '''//trim(h%name)//''' begins anew in several stages, '// &
@@ -198,7 +199,7 @@ contains
       allocate (times(0), values(0), arcs(0))
       do s = 1, size(named)
          if (.not. named(s)) cycle
-         start = sum(model%stages(:s - 1)%duration)
+         start = sum(stages(:s - 1)%duration)
          i = size(times)
          if (i == 0) then
             times = start + h%times
@@ -207,7 +208,7 @@ contains
          else if (start + h%times(1) < times(i) - ROUNDING*length) then
             call raise(fault, EXIT_INPUT, place_of(h)//'history '''//trim(h%name)//''' lasts up to '// &
                        short(times(i))//' s, and begins anew at '//short(start + h%times(1))//' s with stage '// &
-                       trim(model%stages(s)%name)//': shorten it, or lengthen the stage before.')
+                       trim(stages(s)%name)//': shorten it, or lengthen the stage before.')
             return
          else if (start + h%times(1) <= times(i) + ROUNDING*length) then
             times = [times, start + h%times(2:)]

@@ -78,7 +78,7 @@ contains
          else if (size(given%center) /= 2) then
             call raise(fault, EXIT_INPUT, place_of(plate)//'center = r, z are two numbers.')
          else
-            call free_in_plane(given, model, plate, fault)
+            call free_in_plane(given, number, model, fault)
          end if
       end associate
    end subroutine build_group
@@ -102,16 +102,18 @@ contains
    end subroutine build
 
    !> A plate that moves in the plane has two nodes: one with its displacements, one with its rotation.
-   subroutine free_in_plane(given, model, plate, fault)
+   subroutine free_in_plane(given, number, model, fault)
       type(given_t), intent(in) :: given
+      integer, intent(in) :: number   !< Of the plate.
       type(model_t), intent(inout) :: model
-      type(plate_t), intent(inout) :: plate
       type(fault_t), intent(inout) :: fault
       type(coordinate_t) :: along_r, rotation
       real(wp), allocatable :: touched(:, :)
       real(wp) :: lever
+      type(plate_t) :: plate
       integer :: own
 
+      plate = model%plates(number)
       own = find_group(model%domain%mesh, trim(plate%name))
       associate (mesh => model%domain%mesh)
          if (find_group(mesh, trim(plate%name)//SUFFIX) > 0) then
@@ -147,6 +149,7 @@ contains
       plate%coordinates = [plate%coordinates, along_r, rotation]
       deallocate (plate%motion)
       allocate (plate%motion, source=plane_motion_t(center=given%center, lever=lever))
+      model%plates(number) = plate
       model%domain%bodies_along_r = [model%domain%bodies_along_r, plate%node]
    end subroutine free_in_plane
 
