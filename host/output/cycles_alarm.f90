@@ -29,7 +29,7 @@ module cycles_alarm
       real(wp), allocatable :: farthest(:)
       integer, allocatable :: sense(:)       !< Way that each goes, 1 or -1; 0: it has not moved.
       integer, allocatable :: turns(:)       !< Number of turns; see follow_ground for displacements.
-      real(wp), allocatable :: largest(:)    !< (1) Of the displacements when their turns began to count [m].
+      real(wp) :: largest = 0.0_wp           !< Largest displacement when turns of the ground began to count [m].
       logical, allocatable :: counts(:)      !< (nodes) On ground whose strain of many cycles is too large.
       logical :: told = .false.
    contains
@@ -47,7 +47,7 @@ contains
       call archive%exchange_allocatable('farthest', self%farthest, '1', 'what came how far')
       call archive%exchange_allocatable('sense', self%sense, '1', 'ways that they go')
       call archive%exchange_allocatable('turns', self%turns, '1', 'turns so far')
-      call archive%exchange_allocatable('largest', self%largest, 'm', 'largest displacement that was doubled last')
+      call archive%exchange('largest', self%largest, 'm', 'largest displacement that was doubled last')
       call archive%leave('cycles')
    end subroutine exchange
 
@@ -69,7 +69,6 @@ contains
       self%farthest = [(amplitude_at(model%amplitudes(i), run%state%time), i=1, size(model%amplitudes)), &
                        run%state%x(:DISPLACEMENTS, :)]
       allocate (self%sense(size(self%farthest)), self%turns(size(self%farthest)), source=0)
-      self%largest = [0.0_wp]
    end subroutine begins
 
    !> Counts the turns of the histories that act in the stage and of the displacements of the ground, and tells when one
@@ -125,7 +124,7 @@ contains
       integer :: i, k
 
       largest = maxval(maxval(abs(u), 1), mask=self%counts)
-      if (largest > 2.0_wp*self%largest(1)) then
+      if (largest > 2.0_wp*self%largest) then
          self%largest = largest
          self%turns(n + 1:) = 0
       end if
@@ -133,7 +132,7 @@ contains
          if (.not. self%counts(i)) cycle
          do k = 1, size(u, 1)
             associate (at => n + size(u, 1)*(i - 1) + k)
-               call follow(u(k, i), LEAST_SHARE*max(largest, self%largest(1)), self%farthest(at), self%sense(at), &
+               call follow(u(k, i), LEAST_SHARE*max(largest, self%largest), self%farthest(at), self%sense(at), &
                            self%turns(at))
             end associate
          end do

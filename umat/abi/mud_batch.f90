@@ -12,13 +12,14 @@ module mud_batch
    use mud_registry, only: NSTATV, NSTATV_BASE, S_OPEN, S_SATURATION, S_SUCTION, S_VOID_RATIO
    use mud_retention, only: saturation_t, saturation, read_preset
    use mud_retention_point, only: state_saturation
-   use mud_side_by_side, only: given_t, update_side_by_side, WIDTH
+   use mud_side_by_side, only: given_t, update_side_by_side
    use mud_state, only: statev_size, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_STATEV, &
       ON_ARGUMENT
    use mud_tensor, only: is_finite
    use mud_to_host, only: number_at
    use mud_total, only: effective_stress, total_stress
+   use mud_vector, only: WIDTH
    implicit none (type, external)
    private
    public :: c_init_points, c_update_points, c_saturation_points

@@ -8,11 +8,10 @@ module mud_side_by_side
    use mud_params, only: params_t
    use mud_registry, only: S_SUCTION
    use mud_status, only: MUD_OK
+   use mud_vector, only: WIDTH
    implicit none (type, external)
    private
-   public :: WIDTH, given_t, update_side_by_side
-
-   integer, parameter :: WIDTH = 8   !< Points side by side at most.
+   public :: given_t, update_side_by_side
 
    !> An increment as a host asks for it: stress as its options say, suction at the end.
    type :: given_t

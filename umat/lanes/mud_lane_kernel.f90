@@ -6,11 +6,11 @@ module mud_lane_kernel
    use mud_integration, only: integration_t
    use mud_kernel, only: report_t, output_t, start_t, read_state, write_output, report_of, from_umat_strain
    use mud_kinds, only: wp
-   use mud_lane_rates, only: WIDTH
    use mud_lanes, only: fits_lanes, update_side_by_side
    use mud_params, only: params_t
    use mud_registry, only: S_SUCTION
    use mud_status, only: MUD_OK, MUD_BAD_STATE
+   use mud_vector, only: WIDTH
    implicit none (type, external)
    private
    public :: mud_lane_points

@@ -12,13 +12,14 @@ module mud_lane_loops
    use mud_direction_equation, only: equation_of
    use mud_increment, only: increment_t, loading_strain, void_ratio_at, add_aside
    use mud_kinds, only: wp
-   use mud_lane_rates, only: WIDTH, lanes_t, load_state, number
+   use mud_lane_rates, only: lanes_t, load_state, number
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: conditions_t, evaluate_point, weight_at, hardening_at, find_drive, finish_rate, &
       MODE_ORDINARY
    use mud_retention, only: curve_saturation
    use mud_tensor, only: deviator, norm, trace
+   use mud_vector, only: WIDTH
    implicit none (type, external)
    private
    public :: mud_find_rates

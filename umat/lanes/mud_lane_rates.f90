@@ -9,12 +9,10 @@ module mud_lane_rates
    use mud_rates, only: is_certain, MODE_ORDINARY
    use mud_state, only: counters_t
    use mud_tensor, only: deviator, trace
-   use mud_vector, only: NY, Y_Z, Y_Z_END
+   use mud_vector, only: NY, Y_Z, Y_Z_END, WIDTH
    implicit none (type, external)
    private
-   public :: WIDTH, lanes_t, take_increment, ask, load_state, give_rate, number
-
-   integer, parameter :: WIDTH = 8   !< Points side by side.
+   public :: lanes_t, take_increment, ask, load_state, give_rate, number
 
    !> Rates side by side; names and units as in rate_t and conditions_t.
    type :: lanes_t

@@ -10,7 +10,7 @@ module mud_lanes
    use mud_increment, only: increment_t, rate_of, take_phase
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
-   use mud_lane_rates, only: WIDTH, lanes_t, take_increment, ask, give_rate
+   use mud_lane_rates, only: lanes_t, take_increment, ask, give_rate
    use mud_mechanism, only: begin_mechanism
    use mud_order, only: look_for_stiffness
    use mud_params, only: params_t
@@ -27,7 +27,7 @@ module mud_lanes
    use mud_transient, only: begin_transient, take_far, take_half, half_way, without_turn
    use mud_transitions, only: begin_substep
    use mud_trial, only: begin_stage, end_stage, end_stages
-   use mud_vector, only: NY, Y_Z, Y_Z_END
+   use mud_vector, only: NY, Y_Z, Y_Z_END, WIDTH
    implicit none (type, external)
    private
    public :: fits_lanes, update_side_by_side
@@ -70,7 +70,7 @@ contains
       type(blocks_t), intent(inout) :: blocks(WIDTH)
       type(point_t) :: of(WIDTH)
       type(lanes_t), target :: q
-      type(course_t) :: course
+      type(course_t) :: course   !< No material that fits has hysteresis: one serves every point.
       integer :: j
       logical :: follows
 

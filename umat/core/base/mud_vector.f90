@@ -3,7 +3,7 @@
 module mud_vector
    implicit none (type, external)
    private
-   public :: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_OPTIONS, N_OPTIONS
+   public :: NY, Y_Z, Y_Z_END, Y_SHEAR, Y_OPTIONS, N_OPTIONS, WIDTH
 
    ! sigma' [kPa] stands first, 1 to 6.
    integer, parameter :: Y_Z = 7, Y_Z_END = 12   !< fabric [-]
@@ -11,4 +11,5 @@ module mud_vector
    integer, parameter :: N_OPTIONS = 3           !< Numbers of options; each has its places in its own file.
    integer, parameter :: Y_OPTIONS = Y_SHEAR + 1   !< the first of them
    integer, parameter :: NY = Y_SHEAR + N_OPTIONS
+   integer, parameter :: WIDTH = 8               !< Vectors that umat/lanes integrates side by side.
 end module mud_vector
