@@ -16,7 +16,7 @@ function(mud_set_warnings target)
       endif()
    endif()
    # Without much optimisation gfortran 12 takes allocations for a use of undefined bounds.
-   if(CMAKE_BUILD_TYPE MATCHES "^(Debug|Sanitize)$")
+   if(arg_TESTS OR CMAKE_BUILD_TYPE MATCHES "^(Debug|Sanitize)$")
       list(APPEND fortran -Wno-maybe-uninitialized)
    endif()
    if(MUD_WERROR)

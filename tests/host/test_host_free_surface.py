@@ -5,7 +5,7 @@ import os
 import shutil
 import subprocess
 
-from checking import build, check, root, work
+from checking import at_length, build, check, root, work
 import tables  # noqa: E402 (checking knows its folder)
 
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -36,6 +36,7 @@ def run(name, *more):
     return tables.numbers(work / name / "histories.csv") if done.returncode == 0 else []
 
 
+@at_length
 def test_the_footing_sinks_and_grains_part_beside_it():
     # 3 cm are given. Soil is at its loosest at 1/c_h; without a gap the void ratio of the soil would reach its bound.
     rows = run("footing")

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from checking import check, light, root, work
+from checking import at_length, check, light, root, work
 from host_program import ran, start
 
 sys.path.insert(0, str(root / "common"))
@@ -180,6 +180,7 @@ SHEARED = """&scene name = 'sheared' geometry = 'plane_strain' fields = 'u-p_w' 
 """
 
 
+@at_length
 def test_a_tighter_accuracy_ends_no_run_that_a_looser_one_carries():
     # The first step of a flow is the square of the accuracy, 1e-8 of the stage at 1e-4: rates of strain are then what
     # rounding leaves of displacements, divided by 2e-9 s.
@@ -323,6 +324,7 @@ def test_a_flow_of_air_hides_no_water():
         check(f"{name}: no loss is told", "m3 of water" not in done.stderr, done.stderr)
 
 
+@at_length
 @pytest.mark.parametrize("aired", ["all", "top"])
 def test_water_drawn_from_a_surface_is_missing_below(aired):
     # The surface dries to suctions of 1e4 kPa, thousands of times those that hold the water below. Changes of pressure

@@ -8,7 +8,7 @@ import subprocess
 
 import numpy as np
 
-from checking import build, check, root, work
+from checking import at_length, build, check, root, work
 import tables  # noqa: E402
 
 host = build / "host/mud_host"
@@ -148,6 +148,7 @@ def test_rest_takes_few_steps():
 PULSE = root / "verification/host/dynamic_consolidation/scene.nml"
 
 
+@at_length
 def test_waves_too_fast_for_the_steps_do_not_shorten_them_without_end():
     done = run(PULSE, work / "pulse", "--step-tolerance", "1e-2")
     check("pulse on saturated soil: runs to its end", done.returncode == 0, done.stderr)
@@ -155,6 +156,7 @@ def test_waves_too_fast_for_the_steps_do_not_shorten_them_without_end():
     check("pulse on saturated soil: steps", steps < 400, steps)
 
 
+@at_length
 def test_ten_times_the_tolerance_ten_times_the_error_of_a_vibration():
     # A step errs by the third power of its length: the local error is tolerance**1.5, so that the sum is in proportion
     # to the tolerance, and the steps to its root. Nine periods add up.
@@ -208,6 +210,7 @@ def test_a_record_of_401_breaks_a_step_ends_at_the_one_that_matters():
     check("a record of 401 breaks: not at every one", len(times) < 300, len(times))
 
 
+@at_length
 def test_given_steps_stay():
     # What the scene sets by hand stays: steps, Newton's tolerance.
     done = run(written("hand", TERZAGHI.read_text().replace("dt = 1.0e-3", "dt = 1.0e-3\n   steps = 'given'")),
@@ -246,6 +249,8 @@ def test_given_steps_stay():
     check("static steps: more for a smaller tolerance", 4 < len(forces["1e-1"]) < len(forces["1e-2"]) < 40,
           {name: len(force) for name, force in forces.items()})
 
+
+@at_length
 def test_fall_speed_of_the_reference():
     run(written("drop_fine", DROP.replace("STEPS", "dt = 1e-5")), work / "drop_fine")
     exact = landing(work / "drop_fine")

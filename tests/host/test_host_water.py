@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-from checking import build, check, work
+from checking import at_length, build, check, work
 import tables  # noqa: E402
 
 environment = {**os.environ, "OMP_NUM_THREADS": "1"}
@@ -57,6 +57,7 @@ def test_no_water_is_lost_in_the_first_step_of_a_flow():
     check("so is what is drawn in one controlled step", share < 1e-4, share)
 
 
+@at_length
 def test_what_came_through_a_support_is_stored_whatever_the_steps():
     # Drawn beyond what the ground lets through: the top dries, and the flow from below changes in steps that differ by
     # orders. Steps times flows at their ends leave 6e-4 and 2e-4 of it, what is stored Newton's tolerance.

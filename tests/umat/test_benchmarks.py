@@ -4,7 +4,7 @@ import itertools
 import subprocess
 import sys
 
-from checking import build, check, preset, root, work
+from checking import at_length, build, check, preset, root, work
 
 sys.path.insert(0, str(root / "common"))
 import tables  # noqa: E402
@@ -47,6 +47,7 @@ def test_a_round_fills_the_tables():
         check(f"its tables have {path}", f"| {path} |" in done.stdout, done.stdout)
 
 
+@at_length
 def test_work_and_precision_run():
     page = root / "verification/studies/work_precision"
     done = start(build / "benchmarks/work_precision", page/"reference.csv")

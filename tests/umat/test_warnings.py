@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 sys.path.append(str(pathlib.Path(__file__).parents[1] / "support"))
-from checking import build, check, needs_plain_library, root
+from checking import at_length, build, check, needs_plain_library, root
 
 needs_plain_library()
 INTS, DOUBLES, POINTER = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
@@ -133,6 +133,7 @@ def test_warns_once_of_p_atm_in_pa_among_kpa():
         check(f"{door} says nothing of p_atm in kPa", told(door, 101.325) == [])
 
 
+@at_length
 def test_a_doubtful_start_is_told_once_a_process_by_every_entry():
     # 1.5 kPa is tension of more than p_atm/100. 5.1e4 kPa is above 50 MPa. The default compression line is at
     # e = 25*3000**-0.37 = 1.29 for 3000 kPa, and at 1.67 for half of that.

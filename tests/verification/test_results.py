@@ -6,7 +6,7 @@ import sys
 import threading
 
 import pytest
-from checking import build, check, light, nightly, root, work
+from checking import at_length, build, check, light, nightly, root, work
 
 sys.path.insert(0, str(root / "verification"))
 from tools import results, runner  # noqa: E402
@@ -40,6 +40,7 @@ def test_no_data_of_a_page_is_empty():
     check("every committed table has a row", not empty, empty)
 
 
+@at_length
 def test_a_night_has_room_for_every_script_and_page(capsys, monkeypatch):
     # What --all --make leaves out needs a program that is not here or says that it runs alone.
     names = runner.names()
