@@ -8,7 +8,6 @@ module progress_line
    use run_state, only: run_t
    use wall_clock, only: clock
    use kinds, only: wp
-   use model_types, only: model_t
    use files, only: to_terminal, terminal_width
    use texts, only: short, whole
    use scene_parts, only: stage_t
@@ -31,9 +30,8 @@ module progress_line
    end type progress_observer_t
 contains
    !> Shows the step, the share of the stage and the time that is left.
-   subroutine taken_over(self, model, run, fault)
+   subroutine taken_over(self, run, fault)
       class(progress_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: line
@@ -54,12 +52,12 @@ contains
       ! The first step has no pace yet.
       if (.not. self%pace > 0.0_wp .or. now - self%last_line < PERIOD) return
       self%last_line = now
-      associate (stage => model%stages(run%at%stage), at => run%at)
+      associate (stage => run%stage, at => run%at)
          left = steps_left(stage, at%nominal*at%factor, at%t_start + stage%duration - run%state%time)
          ! Stages to come that choose their steps have not chosen them yet.
-         known = .not. any(model%stages(at%stage + 1:)%controlled)
-         do i = at%stage + 1, merge(size(model%stages), at%stage, known)
-            left = left + steps_left(model%stages(i), model%stages(i)%dt, model%stages(i)%duration)
+         known = .not. any(run%model%stages(at%stage + 1:)%controlled)
+         do i = at%stage + 1, merge(size(run%model%stages), at%stage, known)
+            left = left + steps_left(run%model%stages(i), run%model%stages(i)%dt, run%model%stages(i)%duration)
          end do
          line = 'Stage '//trim(stage%name)//': step '//whole(at%step)//', time '//short(run%state%time)//' s, '// &
                 whole(nint(100*(run%state%time - at%t_start)/stage%duration))//' %; about '// &
@@ -69,23 +67,21 @@ contains
    end subroutine taken_over
 
    !> Shows an attempt that is not accepted, as often as that.
-   subroutine repeated(self, model, run, fault)
+   subroutine repeated(self, run, fault)
       class(progress_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (.not. to_terminal()) return
       if (clock() - self%last_line < PERIOD) return
       self%last_line = clock()
-      call write_line('Stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%state%time)// &
+      call write_line('Stage '//trim(run%stage%name)//', time '//short(run%state%time)// &
                       ' s: a step of '//short(run%scheme%dt)//' s is repeated, cuts '//whole(run%cuts), self)
    end subroutine repeated
 
    !> Empties the line on the terminal, so that another can be written.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(progress_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
