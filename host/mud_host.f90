@@ -20,7 +20,7 @@ program mud_host
    implicit none (type, external)
    type(options_t) :: options
    type(scene_t) :: scene
-   type(model_t) :: model
+   type(model_t), target :: model
    type(run_t) :: run
    type(observers_t) :: observers
    type(fault_t) :: fault
@@ -32,13 +32,13 @@ program mud_host
    if (fault%code == 0) call read_scene(options%scene, scene, fault, options%set)
    if (fault%code == 0) call build_model(scene, model, fault)
    if (fault%code == 0) call prepare_run(model, run, fault)
-   if (fault%code == 0) call report_start(scene, model, run, options%quiet, options%verbose, options%only_check)
+   if (fault%code == 0) call report_start(scene, run, options%quiet, options%verbose, options%only_check)
    if (fault%code == 0) call list_observers(options%folder, options%quiet, options%verbose, started, observers)
-   if (fault%code == 0 .and. options%restart /= '') call read_checkpoint(options%restart, model, run, observers, fault)
+   if (fault%code == 0 .and. options%restart /= '') call read_checkpoint(options%restart, run, observers, fault)
    if (fault%code == 0 .and. options%only_check) then
-      call report_restart(model, run, observers, options%restart, options%folder, options%quiet, fault)
+      call report_restart(run, observers, options%restart, options%folder, options%quiet, fault)
    else if (fault%code == 0) then
-      call run_stages(model, run, observers, fault)
+      call run_stages(run, observers, fault)
    end if
    call leave()
 contains

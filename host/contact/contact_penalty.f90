@@ -10,7 +10,7 @@ module contact_penalty
                              POSITION, SHARE, LARGEST_POINTS
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, nodal_forces_t, pair_response, new_forces, make_room, add_column
-   use contact_search, only: search_t, prepare_search, find_candidates
+   use contact_search, only: search_t, find_candidates
    use contact_types, only: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, &
                             CONTACT_OK, CONTACT_NO_PROJECTION
    use kinds, only: wp
@@ -57,7 +57,6 @@ module contact_penalty
       real(wp) :: unpressed = 0.0_wp            !< Deepest penetration without pressure, over its edge [-].
       real(wp) :: unpressed_at(2) = 0.0_wp      !< Middle of the edge with this penetration [m].
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
-      integer :: checks = 0                     !< Pairs of boxes the search compared.
    end type contact_result_t
 contains
    !> Room for evaluations of prepared surfaces.
@@ -73,7 +72,6 @@ contains
       allocate (work%pair(slaves + masters))
       allocate (work%position(unknowns), work%touched(unknowns), source=0)
       allocate (work%left(unknowns), work%right(unknowns), work%load(geometry%slave_nodes), source=0.0_wp)
-      call prepare_search(work%search, slaves, masters)
    end function new_workspace
 
    !> Nothing in contact.
@@ -112,7 +110,6 @@ contains
 
       call find_candidates(work%search, slave_x, geometry%slave_edges, master_x, geometry%master_edges, &
                            geometry%options%search_radius)
-      result%checks = work%search%checks
       call find_whole(geometry, slave_x, result)
       call find_gaps(geometry, slave_x, master_x, work, result, status)
       if (status%code /= CONTACT_OK) return

@@ -7,7 +7,7 @@ module boundary_builder
    use exit_codes, only: EXIT_GROUP
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
-   use model_types, only: model_t, action_t, acting_t, gravity_at, initial_t, fix_t, load_t, plate_t, coordinate_t, &
+   use model_types, only: model_t, acting_t, gravity_at, initial_t, fix_t, load_t, plate_t, coordinate_t, &
                           contact_pair_t, tie_t
    use name_search, only: mesh_group, history_named
    use scene_parts, only: acts_in, place_of, LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, &
@@ -18,7 +18,7 @@ module boundary_builder
    use unknown_fields, only: FIELD_NAMES, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: build_plate, build_initial, build_fix, build_load, build_contact, build_tie, list_actions, add_body
+   public :: build_plate, build_initial, build_fix, build_load, build_contact, build_tie, add_body
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    character(*), parameter :: STAGES = 'names of stages; default: all'
@@ -56,6 +56,9 @@ contains
       call k%text('history', history, 'factor on the forces', '+force|force_r|moment', refers='history')
       if (k%lists) return
       plate%scene_item_t = item_of(k%group)
+      plate%what = '&plate'
+      plate%bears = .true.
+      allocate (plate%stages(0))
       if (count([k%given('group'), k%given('r'), k%given('outline')]) /= 1) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'a plate has a face of its own, r = begin, end (in the '// &
                     'plane also outline), or it is joined to a boundary, group = name: give one of the two.')
@@ -94,6 +97,7 @@ contains
       plate%coordinates = [coordinate_t(node=plate%node, mass=plate%mass, load=plate%force)]
       call check_apart(model, plate, fault)
       model%plates = [model%plates, plate]
+      model%actions = [model%actions, plate%action_t]
    end subroutine build_plate
 
    !> Joined plates that share a node would be one body, which has one mass. Fault EXIT_GROUP: a plate shares a node
@@ -238,7 +242,11 @@ contains
          call raise(fault, EXIT_INPUT, place_of(fix)//'the scene has no field '//WORD_OF(fix%field)// &
                     '; see fields in &scene.')
       end if
+      fix%what = '&fix'
+      fix%supports = .true.
+      if (fix%hold) fix%amplitude = 0
       model%fixes = [model%fixes, fix]
+      model%actions = [model%actions, fix%action_t]
    end subroutine build_fix
 
    !> &load. Fault EXIT_GROUP: its group or history does not exist, or the group lacks edges. EXIT_INPUT: an inflow of a
@@ -272,7 +280,11 @@ contains
          call raise(fault, EXIT_INPUT, place_of(load)//'the scene has no field for such an inflow; see '// &
                     'fields in &scene.')
       end if
+      load%what = '&load'
+      load%along_normal = any(load%kind == [LOAD_PRESSURE, LOAD_RAIN])
+      load%bears = load%kind == LOAD_PRESSURE
       model%loads = [model%loads, load]
+      model%actions = [model%actions, load%action_t]
    end subroutine build_load
 
    !> Where something stands, and the group of the mesh and the history that it names. Fault EXIT_GROUP: there is none.
@@ -339,7 +351,16 @@ contains
             return
          end if
       end do
+      contact%what = '&contact'
+      contact%along_normal = .true.
+      contact%group = contact%slave
+      contact%bears = .true.
       model%contacts = [model%contacts, contact]
+      model%actions = [model%actions, contact%action_t]
+      if (contact%plate > 0) return
+      contact%group = contact%master
+      contact%bears = .false.
+      model%actions = [model%actions, contact%action_t]
    end subroutine build_contact
 
    !> &tie: pairs of nodes at equal heights. Fault EXIT_GROUP: a boundary does not exist, or the nodes of both are not
@@ -389,44 +410,4 @@ contains
       end associate
       model%ties = [model%ties, tie]
    end subroutine build_tie
-
-   !> What acts on groups of the mesh, for those who ask no more of it; terms add theirs.
-   subroutine list_actions(model)
-      type(model_t), intent(inout) :: model
-      type(action_t) :: action   !< The one that is added: in an array constructor its own constructor would leak.
-      integer :: i
-
-      allocate (model%actions(0))
-      do i = 1, size(model%loads)
-         associate (one => model%loads(i))
-            action = action_t(one%file, one%line, '&load', one%group, one%amplitude, one%stages, &
-               along_normal=any(one%kind == [LOAD_PRESSURE, LOAD_RAIN]), bears=one%kind == LOAD_PRESSURE)
-            model%actions = [model%actions, action]
-         end associate
-      end do
-      do i = 1, size(model%fixes)
-         associate (one => model%fixes(i))
-            action = action_t(one%file, one%line, '&fix', one%group, merge(0, one%amplitude, one%hold), one%stages, &
-                              one%from, supports=.true.)
-            model%actions = [model%actions, action]
-         end associate
-      end do
-      do i = 1, size(model%contacts)
-         associate (one => model%contacts(i))
-            action = action_t(one%file, one%line, '&contact', one%slave, 0, one%stages, along_normal=.true., &
-                              bears=.true.)
-            model%actions = [model%actions, action]
-            if (one%plate > 0) cycle
-            action = action_t(one%file, one%line, '&contact', one%master, 0, one%stages, along_normal=.true.)
-            model%actions = [model%actions, action]
-         end associate
-      end do
-      do i = 1, size(model%plates)
-         associate (one => model%plates(i))
-            action = action_t(one%file, one%line, '&plate', one%group, one%amplitude, bears=.true.)
-            allocate (action%stages(0))
-            model%actions = [model%actions, action]
-         end associate
-      end do
-   end subroutine list_actions
 end module boundary_builder

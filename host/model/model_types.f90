@@ -56,17 +56,15 @@ module model_types
    end type initial_t
 
    !> A value that acts on a group, as it is or by a load.
-   type, extends(scene_item_t) :: acting_t
+   type, extends(action_t) :: acting_t
       character(LENGTH) :: group_name = ''
-      integer :: group = 0, amplitude = 0
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
       logical :: of_body = .false.                   !< It acts on a coordinate of a plate alone.
-      character(LENGTH), allocatable :: stages(:)
    end type acting_t
 
    type, extends(acting_t) :: fix_t
       integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
-      real(wp) :: from = -NEVER, until = NEVER
+      real(wp) :: until = NEVER                      !< Not after this time [s].
       logical :: hold = .false., acceleration = .false.
       logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
    end type fix_t
@@ -88,12 +86,11 @@ module model_types
 
    !> A rigid plate: one with a face of its own that presses through a contact, or one that is joined to a boundary of
    !> the mesh.
-   type, extends(scene_item_t) :: plate_t
+   type, extends(action_t) :: plate_t             !< Group: boundary that moves with it, 0: it has a face of its own.
       character(NAME_LENGTH) :: name = ''
       real(wp), allocatable :: corners(:, :)         !< (2, corners) of its own face, body on the left [m].
       real(wp) :: mass = 0.0_wp, force = 0.0_wp
       logical :: heavy = .false.
-      integer :: group = 0, amplitude = 0            !< Boundary that moves with it, 0: it has a face of its own.
       integer :: node = 0                            !< It carries the plate's u_z: its own, or of the boundary.
       real(wp) :: penalty = 0.0_wp                   !< Springs that tie the boundary to it [kN/m3]; 0: they share u_z.
       class(plate_motion_t), allocatable :: motion
@@ -101,10 +98,9 @@ module model_types
    end type plate_t
 
    !> Two boundaries, or a boundary and a plate, that may come into contact.
-   type, extends(scene_item_t) :: contact_pair_t
+   type, extends(action_t) :: contact_pair_t
       character(NAME_LENGTH) :: name = ''
       type(contact_options_t) :: options
-      character(LENGTH), allocatable :: stages(:)
       integer :: slave = 0, master = 0
       integer :: plate = 0                           !< The master as a plate with a face of its own, 0: it is none.
    end type contact_pair_t

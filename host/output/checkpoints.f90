@@ -33,9 +33,8 @@ module checkpoints
    end type checkpoint_observer_t
 contains
    !> Begins to count the time to the first checkpoint.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(checkpoint_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -44,34 +43,33 @@ contains
 
    !> Writes a checkpoint where it is due, and ends a run that is interrupted. A run that is taken up here has no
    !> factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be written; EXIT_INTERRUPTED.
-   subroutine taken_over(self, model, run, fault)
+   subroutine taken_over(self, run, fault)
       class(checkpoint_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       logical :: due
 
       due = interrupted()
-      associate (steps => model%output%checkpoint_steps, seconds => model%output%checkpoint_seconds)
+      associate (steps => run%model%output%checkpoint_steps, seconds => run%model%output%checkpoint_seconds)
          if (steps > 0) due = due .or. mod(run%steps, steps) == 0
          if (seconds > 0.0_wp) due = clock() - self%last >= seconds .or. due
       end associate
       if (due) then
-         call write_checkpoint(self%folder, model, run, self%earlier, fault)
+         call write_checkpoint(self%folder, run, self%earlier, fault)
          self%last = clock()
          run%system%factored = .false.
          run%assembly%slopes%known = .false.
       end if
-      if (fault%code == 0 .and. interrupted() .and. .not. (run%news%last .and. run%at%stage == size(model%stages))) &
-         call raise(fault, EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to '// &
-                    'there are complete; --restart '//self%folder//'/'//CHECKPOINT//' goes on.')
+      if (fault%code == 0 .and. interrupted() .and. &
+          .not. (run%news%last .and. run%at%stage == size(run%model%stages))) call raise(fault, &
+         EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to there are complete; '// &
+         '--restart '//self%folder//'/'//CHECKPOINT//' goes on.')
    end subroutine taken_over
 
    !> Writes the complete state of a run to checkpoint.h5, in place of an older one. Fault EXIT_OUTPUT: a table or the
    !> checkpoint cannot be written.
-   subroutine write_checkpoint(folder, model, run, observers, fault)
+   subroutine write_checkpoint(folder, run, observers, fault)
       character(*), intent(in) :: folder
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run   !< Stays as it is; a restart would restore it.
       type(slot_t), intent(inout) :: observers(:)
       type(fault_t), intent(inout) :: fault
@@ -79,8 +77,8 @@ contains
       logical :: good
 
       call create_archive(folder//'/'//CHECKPOINT, KIND_OF_FILE, archive)
-      call exchange_scene(folder, model, archive, fault)
-      call exchange_run(model, run, archive)
+      call exchange_scene(folder, run%model, archive, fault)
+      call exchange_run(run, archive)
       call exchange_observers(observers, archive)
       call close_archive(archive, good)
       if (.not. good) call raise(fault, EXIT_OUTPUT, folder//'/'//CHECKPOINT//' cannot be written; is the '// &
@@ -89,9 +87,8 @@ contains
 
    !> Puts a prepared run and its observers where the checkpoint was written. Fault EXIT_RESTART: no checkpoint, a
    !> damaged one, one of another version, or of another scene.
-   subroutine read_checkpoint(path, model, run, observers, fault)
+   subroutine read_checkpoint(path, run, observers, fault)
       character(*), intent(in) :: path
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
@@ -100,8 +97,8 @@ contains
 
       call open_archive(path, KIND_OF_FILE, archive, fault)
       if (fault%code /= 0) return
-      call exchange_scene(path, model, archive, fault)
-      if (fault%code == 0) call exchange_run(model, run, archive)
+      call exchange_scene(path, run%model, archive, fault)
+      if (fault%code == 0) call exchange_run(run, archive)
       if (fault%code == 0) call exchange_observers(observers%list, archive)
       call close_archive(archive, good)
       if (fault%code == 0 .and. .not. good) call raise(fault, EXIT_RESTART, path//DAMAGED)

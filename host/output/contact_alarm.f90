@@ -7,7 +7,6 @@ module contact_alarm
    use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
    use generalised_alpha, only: has_inertia
    use faults, only: fault_t
-   use model_types, only: model_t
    use run_observer, only: observer_t
    use run_state, only: run_t
    use scene_parts, only: acts_in
@@ -35,44 +34,43 @@ module contact_alarm
 contains
    !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
    !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
-   subroutine stage_begins(self, model, run, fault)
+   subroutine stage_begins(self, run, fault)
       class(contact_alarm_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (size(model%contacts) == 0) return
+      if (size(run%model%contacts) == 0) return
       select type (contacts => run%system%contacts)
       type is (contacts_t)
-         if (contacts%probe(run%state%x)) call warn_of_overlaps(model, contacts%interfaces, run%state%x, run%at%stage)
+         if (contacts%probe(run%state%x)) call warn_of_overlaps(run, contacts%interfaces)
       end select
    end subroutine stage_begins
 
-   subroutine warn_of_overlaps(model, interfaces, x, number)
-      type(model_t), intent(in) :: model
+   subroutine warn_of_overlaps(run, interfaces)
+      type(run_t), intent(in) :: run
       type(contact_interface_t), intent(in) :: interfaces(:)
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
-      integer, intent(in) :: number     !< Number of the stage.
       real(wp) :: depth
       integer :: i, at
 
-      do i = 1, size(model%contacts)
-         if (.not. interfaces(i)%acts) cycle
-         if (number > 1) then
-            if (acts_in(model%contacts(i)%stages, model%stages(number - 1)%name)) cycle
-         end if
-         associate (t => interfaces(i), one => model%contacts(i))
+      do i = 1, size(run%model%contacts)
+         associate (t => interfaces(i), one => run%model%contacts(i), x => run%state%x)
+            if (.not. t%acts) cycle
+            if (run%at%stage > 1) then
+               if (acts_in(one%stages, run%model%stages(run%at%stage - 1)%name)) cycle
+            end if
             at = maxloc(t%probe%pressure, 1)
             depth = t%probe%pressure(at)/one%options%penalty
             if (depth <= ROUNDING_DEPTH*shortest_edge(t%slave)) cycle
             if (one%plate > 0) then
-               if (model%plates(one%plate)%heavy .and. depth <= -PLACED*x(AT_U_Z, model%plates(one%plate)%node)) cycle
+               associate (plate => run%model%plates(one%plate))
+                  if (plate%heavy .and. depth <= -PLACED*x(AT_U_Z, plate%node)) cycle
+               end associate
             end if
             associate (place => t%slave%x0(:, at) + x(:2, t%slave%node(at)))
                call print_warning('contact '//trim(one%name)//' begins with surfaces that overlap by up to '// &
                   short(depth)//' m, near ('//short(place(1))//', '//short(place(2))//') m. The penalty presses '// &
                   'there with '//short(t%probe%pressure(at))//' kPa and stores '//short(t%probe%energy)//' kJ, '// &
-                  'which no load has done: '//advice(model%stages(number)%kind, ROUNDING_DEPTH*shortest_edge(t%slave)))
+                  'which no load has done: '//advice(run%stage%kind, ROUNDING_DEPTH*shortest_edge(t%slave)))
             end associate
          end associate
       end do
@@ -93,22 +91,21 @@ contains
 
    !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
-   subroutine step(self, model, run, fault)
+   subroutine step(self, run, fault)
       class(contact_alarm_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      if (size(model%contacts) == 0) return
-      if (.not. allocated(self%told)) allocate (self%told(size(model%contacts)), source=.false.)
+      if (size(run%model%contacts) == 0) return
+      if (.not. allocated(self%told)) allocate (self%told(size(run%model%contacts)), source=.false.)
       select type (contacts => run%system%contacts)
       type is (contacts_t)
          do i = 1, size(self%told)
             associate (t => contacts%interfaces(i))
                if (.not. t%acts .or. self%told(i) .or. t%result%unpressed <= ALARMING_DEPTH) cycle
                self%told(i) = .true.
-               call print_warning('contact '//trim(model%contacts(i)%name)//', time '// &
+               call print_warning('contact '//trim(run%model%contacts(i)%name)//', time '// &
                   short(run%next%time)//' s: near ('//short(t%result%unpressed_at(1))//', '// &
                   short(t%result%unpressed_at(2))//') m the surfaces have penetrated each other by '// &
                   short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &

@@ -40,8 +40,7 @@ contains
    !> [m2], active nodes, sealed nodes, friction on the master along the slave's tangent, summed up [kN], nodes whose
    !> friction is at its limit; of every coordinate of a plate its value [m], rate [m/s], acceleration [m/s2] and load
    !> [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
-   function contact_row(model, run) result(row)
-      type(model_t), intent(in) :: model
+   function contact_row(run) result(row)
       type(run_t), intent(in) :: run   !< After a step that was taken over.
       real(wp), allocatable :: row(:)
       integer :: i
@@ -50,17 +49,17 @@ contains
       if (allocated(run%system%contacts)) then
          select type (contacts => run%system%contacts)
          type is (contacts_t)
-            row = [row, (values(contacts%interfaces(i)), i=1, size(model%contacts))]
+            row = [row, (values(contacts%interfaces(i)), i=1, size(run%model%contacts))]
          end select
       end if
-      row = [row, (of_plate(model%plates(i)), i=1, size(model%plates))]
+      row = [row, (of_plate(run%model%plates(i)), i=1, size(run%model%plates))]
    contains
       pure function of_plate(plate) result(list)
          type(plate_t), intent(in) :: plate
          real(wp) :: list(4*size(plate%coordinates)), loads(size(plate%coordinates))
          integer :: k
 
-         loads = plate_loads(model, plate, run%state%time)
+         loads = plate_loads(run%model, plate, run%state%time)
          do k = 1, size(loads)
             associate (of => plate%coordinates(k), f => plate%coordinates(k)%field, node => plate%coordinates(k)%node, &
                        state => run%state)
@@ -87,8 +86,7 @@ contains
    !> Slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at the
    !> start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step. A
    !> state that a kernel refuses has none.
-   function contact_nodes(model, run) result(table)
-      type(model_t), intent(in) :: model
+   function contact_nodes(run) result(table)
       type(run_t), intent(in) :: run   !< It has contacts.
       real(wp), allocatable :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
       type(contacts_t) :: trial
@@ -103,7 +101,7 @@ contains
          return
       end select
       if (.not. trial%probe(run%state%x)) return
-      do c = 1, size(model%contacts)
+      do c = 1, size(run%model%contacts)
          associate (t => trial%interfaces(c), found => trial%interfaces(c)%probe)
             if (.not. t%acts) cycle
             shear = tangential_tractions(t)

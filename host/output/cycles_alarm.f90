@@ -7,9 +7,8 @@ module cycles_alarm
    use faults, only: fault_t
    use kinds, only: wp
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
-   use model_types, only: model_t
    use run_observer, only: observer_t
-   use run_state, only: run_t
+   use run_state, only: run_t, now_in
    use scene_parts, only: amplitude_at, acts_in
    use texts, only: short, whole
    use turns, only: follow
@@ -52,44 +51,42 @@ contains
    end subroutine exchange
 
    !> Makes room for the histories and the displacements, which start where the run does.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      associate (nodes => model%domain%mesh%t6, of => model%domain%region_of)
+      associate (nodes => run%model%domain%mesh%t6, of => run%model%domain%region_of)
          allocate (self%counts(size(run%state%x, 2)), source=.false.)
          do i = 1, size(of)
-            if (model%domain%regions(of(i))%law%overcounts_cycles) self%counts(nodes(:, i)) = .true.
+            if (run%model%domain%regions(of(i))%law%overcounts_cycles) self%counts(nodes(:, i)) = .true.
          end do
       end associate
       if (run%steps > 0) return
-      self%farthest = [(amplitude_at(model%amplitudes(i), run%state%time), i=1, size(model%amplitudes)), &
+      self%farthest = [(amplitude_at(run%model%amplitudes(i), run%state%time), i=1, size(run%model%amplitudes)), &
                        run%state%x(:DISPLACEMENTS, :)]
       allocate (self%sense(size(self%farthest)), self%turns(size(self%farthest)), source=0)
    end subroutine begins
 
    !> Counts the turns of the histories that act in the stage and of the displacements of the ground, and tells when one
    !> has many, once, on standard error.
-   subroutine step(self, model, run, fault)
+   subroutine step(self, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       real(wp) :: factor, least
       integer :: i, n, at
 
-      n = size(model%amplitudes)
+      n = size(run%model%amplitudes)
       do i = 1, n
-         factor = amplitude_at(model%amplitudes(i), run%next%time)
-         if (.not. acts(model, i, model%stages(run%at%stage)%name)) then
+         factor = amplitude_at(run%model%amplitudes(i), run%next%time)
+         if (.not. acts(run, i)) then
             self%farthest(i) = factor
             self%sense(i) = 0
             cycle
          end if
-         associate (values => model%amplitudes(i)%values)
+         associate (values => run%model%amplitudes(i)%values)
             least = LEAST_SWING*(maxval(values) - minval(values))
          end associate
          call follow(factor, least, self%farthest(i), self%sense(i), self%turns(i))
@@ -99,16 +96,16 @@ contains
       if (self%told .or. maxval(self%turns) <= MANY_REVERSALS) return
       self%told = .true.
       at = maxloc(self%turns, 1)
-      call print_warning('stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%next%time)//' s: '// &
-                         what_turned()//' has turned '//whole(self%turns(at))//' times: '//CYCLES_UNTRUSTED)
+      call print_warning(now_in(run)//what_turned()//' has turned '//whole(self%turns(at))//' times: '// &
+                         CYCLES_UNTRUSTED)
    contains
       function what_turned() result(text)
          character(:), allocatable :: text
 
          if (at <= n) then
-            text = 'history '''//trim(model%amplitudes(at)%name)//''''
+            text = 'history '''//trim(run%model%amplitudes(at)%name)//''''
          else
-            associate (x => model%domain%mesh%x(:, (at - n + 1)/2))
+            associate (x => run%model%domain%mesh%x(:, (at - n + 1)/2))
                text = 'the ground at ('//short(x(1))//', '//short(x(2))//') m'
             end associate
          end if
@@ -139,16 +136,18 @@ contains
       end do
    end subroutine follow_ground
 
-   !> Whether a history acts in a stage; one that no action names, as that of gravity or of a wave, does in all.
-   pure logical function acts(model, amplitude, stage)
-      type(model_t), intent(in) :: model
+   !> Whether a history acts in the stage under way; one that no action names, as that of gravity or of a wave, does in
+   !> all.
+   pure logical function acts(run, amplitude)
+      type(run_t), intent(in) :: run
       integer, intent(in) :: amplitude
-      character(*), intent(in) :: stage
       integer :: i
 
-      acts = .not. any(model%actions%amplitude == amplitude)
-      do i = 1, size(model%actions)
-         if (model%actions(i)%amplitude == amplitude) acts = acts .or. acts_in(model%actions(i)%stages, stage)
-      end do
+      associate (list => run%model%actions)
+         acts = .not. any(list%amplitude == amplitude)
+         do i = 1, size(list)
+            if (list(i)%amplitude == amplitude) acts = acts .or. acts_in(list(i)%stages, run%stage%name)
+         end do
+      end associate
    end function acts
 end module cycles_alarm

@@ -29,19 +29,18 @@ contains
    !> acceleration of a node [m/s2], for that of the skeleton in Darcy's law; the largest tension of the water [kPa],
    !> for suction; the inverse of the least mean effective stress of a material that yields [1/kPa], for gravity; of
    !> every region the largest rate of volume [1/s], for flow. 0 where there is none.
-   function indicators_of(model, run) result(values)
-      type(model_t), intent(in) :: model
+   function indicators_of(run) result(values)
       type(run_t), intent(in) :: run   !< After a step.
-      real(wp) :: values(4 + size(model%domain%regions)), least
+      real(wp) :: values(4 + size(run%model%domain%regions)), least
       integer :: e, at
 
       values = 0.0_wp
       if (run%scheme%has_rates) &
-         values(1) = sqrt(2*kinetic_energy(model%domain, model%dofs, run%constraint%mass, run%next))
+         values(1) = sqrt(2*kinetic_energy(run, run%next))
       if (run%scheme%has_inertia) values(2) = sqrt(maxval(sum(run%next%a**2, dim=1)))
-      values(3) = max(0.0_wp, maxval(-run%next%x(AT_P_W, :), mask=model%dofs%of(AT_P_W, :) > 0))
+      values(3) = max(0.0_wp, maxval(-run%next%x(AT_P_W, :), mask=run%model%dofs%of(AT_P_W, :) > 0))
       least = huge(1.0_wp)
-      associate (m => model%domain, old => run%state, new => run%next)
+      associate (m => run%model%domain, old => run%state, new => run%next)
          do e = 1, size(m%region_of)
             if (.not. is_present(new, e)) cycle
             at = 4 + m%region_of(e)

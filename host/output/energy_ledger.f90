@@ -6,19 +6,17 @@
 module energy_ledger
    use archive, only: archive_t
    use kinds, only: wp
-   use model_types, only: model_t
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use linear_forces, only: work_of_linear_forces
    use degrees_of_freedom, only: dofs_t
    use porous_domain, only: domain_t, region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
                             gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
-   use prescribed_values, only: constraint_t
    use generalised_alpha, only: scheme_t
    use run_state, only: run_t
    implicit none (type, external)
    private
-   public :: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, kinetic_energy, &
+   public :: ledger_t, exchange_ledger, book_step, book_creation, allowed_creation, kinetic_energy, &
              imbalance, ALARMING_SHARE
 
    !> Energy that a run creates out of nothing, as a share of the largest work done in it, beyond which its results are
@@ -54,10 +52,8 @@ contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
    !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
-   subroutine book_step(model, contact_force, run, damping_stress, ledger)
-      type(model_t), intent(in) :: model
-      real(wp), intent(in) :: contact_force(:)   !< Mean forces of the contacts over the step, if there are any [kN].
-                                                 !< (unknowns) or (0).
+   subroutine book_step(contact_force, run, damping_stress, ledger)
+      real(wp), intent(in) :: contact_force(:)   !< Mean forces of contacts and terms over the step [kN]. (unknowns)
       type(run_t), intent(inout) :: run          !< After a step; the flows out of run%next are set.
       !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
       real(wp), allocatable, intent(inout) :: damping_stress(:, :)
@@ -66,16 +62,16 @@ contains
       real(wp), allocatable :: change(:, :), held(:, :)
       integer :: e
 
-      associate (domain => model%domain, dofs => model%dofs, old => run%state, new => run%next, &
+      associate (domain => run%model%domain, dofs => run%model%dofs, old => run%state, new => run%next, &
                  linear => run%constraint%linear)
-         ledger%kinetic = kinetic_energy(domain, dofs, run%constraint%mass, new)
+         ledger%kinetic = kinetic_energy(run, new)
          allocate (change, source=new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))
-         allocate (held, source=moved_by_supports(dofs, run%constraint, change))
+         allocate (held, source=moved_by_supports(run, change))
          do e = 1, size(domain%mesh%t6, 2)
             if (.not. is_present(new, e)) cycle
             associate (node => domain%mesh%t6(:, e))
-               call add_work_of_element(domain, e, run, damping_stress, change(:, node), work)
-               ledger%supports = ledger%supports + work_to_move_element(domain, e, run, damping_stress, held(:, node))
+               call add_work_of_element(e, run, damping_stress, change(:, node), work)
+               ledger%supports = ledger%supports + work_to_move_element(e, run, damping_stress, held(:, node))
                if (.not. domain%with_w .or. .not. run%scheme%has_rates) cycle
                if (domain%regions(domain%region_of(e))%drainage == COUPLED) call book_seepage(domain, e, run, ledger)
             end associate
@@ -88,9 +84,9 @@ contains
          ledger%pores = ledger%pores + work%pores
          ledger%gravity = ledger%gravity + work%gravity
          ledger%damping = ledger%damping + work%damping
-         call book_forces(dofs, run, contact_force, change, ledger)
-         call book_outflow(dofs, run, ledger)
-         if (allocated(damping_stress)) call follow_damping(domain, run, damping_stress)
+         call book_forces(run, contact_force, change, ledger)
+         call book_outflow(run, ledger)
+         if (allocated(damping_stress)) call follow_damping(run, damping_stress)
       end associate
    end subroutine book_step
 
@@ -107,8 +103,7 @@ contains
 
    !> Takes the stress of the damping to the end of the step: such that the one of the equations lies between both at
    !> the level of values, as every other force does. None in a step without inertia. docs/theory/host.md section 9.
-   subroutine follow_damping(domain, run, damping_stress)
-      type(domain_t), intent(in) :: domain
+   subroutine follow_damping(run, damping_stress)
       type(run_t), intent(in) :: run
       real(wp), intent(inout) :: damping_stress(:, :)
       integer :: e, p
@@ -117,8 +112,8 @@ contains
          damping_stress = 0.0_wp
          return
       end if
-      do e = 1, size(domain%mesh%t6, 2)
-         associate (region => domain%regions(domain%region_of(e)))
+      do e = 1, size(run%model%domain%region_of)
+         associate (domain => run%model%domain, region => run%model%domain%regions(run%model%domain%region_of(e)))
             do p = (e - 1)*domain%rule + 1, e*domain%rule
                damping_stress(:, p) = damping_stress(:, p) &
                   + (damping_in(region, run%scheme, run%next%stress(1:4, p) - run%state%stress(1:4, p)) &
@@ -129,9 +124,8 @@ contains
    end subroutine follow_damping
 
    !> The displacements of a step that supports prescribe, zero elsewhere [m].
-   pure function moved_by_supports(dofs, constraint, change) result(held)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
+   pure function moved_by_supports(run, change) result(held)
+      type(run_t), intent(in) :: run
       real(wp), intent(in) :: change(:, :)   !< (2, nodes) of all [m]
       real(wp) :: held(DISPLACEMENTS, size(change, 2))
       integer :: f, k
@@ -139,28 +133,28 @@ contains
       held = 0.0_wp
       do k = 1, size(change, 2)
          do f = 1, DISPLACEMENTS
-            if (dofs%of(f, k) == 0) cycle
-            if (constraint%fixed(dofs%of(f, k))) held(f, k) = change(f, k)
+            associate (at => run%model%dofs%of(f, k))
+               if (at == 0) cycle
+               if (run%constraint%fixed(at)) held(f, k) = change(f, k)
+            end associate
          end do
       end do
    end function moved_by_supports
 
    !> Forces on nodes: loads, contacts, and the inertia of bodies that supports move.
-   subroutine book_forces(dofs, run, contact_force, change, ledger)
-      type(dofs_t), intent(in) :: dofs
+   subroutine book_forces(run, contact_force, change, ledger)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: contact_force(:)
       real(wp), intent(in) :: change(:, :)
       type(ledger_t), intent(inout) :: ledger
-      real(wp) :: load, touch
+      real(wp) :: load
       integer :: i
 
-      touch = 0.0_wp
-      do i = 1, dofs%n
-         if (dofs%field(i) > DISPLACEMENTS) cycle
-         associate (f => dofs%field(i), k => dofs%node(i), constraint => run%constraint, scheme => run%scheme)
+      do i = 1, run%model%dofs%n
+         associate (f => run%model%dofs%field(i), k => run%model%dofs%node(i), constraint => run%constraint, &
+                    scheme => run%scheme, touch => contact_force(i))
+            if (f > DISPLACEMENTS) cycle
             load = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i)) - constraint%offset(i)
-            if (size(contact_force) > 0) touch = contact_force(i)
             ledger%loads = ledger%loads + load*change(f, k)
             ledger%contact = ledger%contact + touch*change(f, k)
             if (.not. constraint%fixed(i)) cycle
@@ -174,15 +168,14 @@ contains
    !> Flow out through prescribed pressures and past limits, less the rain: what runs off never entered. Its mean over
    !> the step is that of the rate of what is stored, so that what has left is what is missing inside, whatever the
    !> steps. docs/theory/host.md section 9.
-   subroutine book_outflow(dofs, run, ledger)
-      type(dofs_t), intent(in) :: dofs
+   subroutine book_outflow(run, ledger)
       type(run_t), intent(inout) :: run
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: flow(OUTFLOWS), mean(OUTFLOWS)
       integer :: i
 
-      associate (scheme => run%scheme, constraint => run%constraint, reaction => run%system%reaction, &
-                 before => run%state%outflow, after => run%next%outflow)
+      associate (dofs => run%model%dofs, scheme => run%scheme, constraint => run%constraint, &
+                 reaction => run%system%reaction, before => run%state%outflow, after => run%next%outflow)
          after = 0.0_wp
          if (.not. scheme%has_rates) return
          flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
@@ -200,8 +193,7 @@ contains
    end subroutine book_outflow
 
    !> Work that moves an element as a step does, inertia included [kJ].
-   real(wp) function work_to_move_element(domain, e, run, damping_stress, du) result(total)
-      type(domain_t), intent(in) :: domain
+   real(wp) function work_to_move_element(e, run, damping_stress, du) result(total)
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
@@ -210,13 +202,12 @@ contains
 
       total = 0.0_wp
       if (.not. any(abs(du) > 0.0_wp)) return
-      call add_work_of_element(domain, e, run, damping_stress, du, work)
+      call add_work_of_element(e, run, damping_stress, du, work)
       total = work%skeleton + work%pores + work%damping + work%inertia - work%gravity
    end function work_to_move_element
 
    !> Work of the mean forces in an element at displacements of its nodes.
-   subroutine add_work_of_element(domain, e, run, damping_stress, du, work)
-      type(domain_t), intent(in) :: domain
+   subroutine add_work_of_element(e, run, damping_stress, du, work)
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
@@ -226,7 +217,7 @@ contains
       real(wp) :: dv(DISPLACEMENTS, 6), v(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
-      associate (scheme => run%scheme, old => run%state, new => run%next)
+      associate (domain => run%model%domain, scheme => run%scheme, old => run%state, new => run%next)
          gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
          node = domain%mesh%t6(:, e)
          dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
@@ -295,29 +286,29 @@ contains
    end subroutine book_seepage
 
    !> Kinetic energy of the soil and of the bodies with a mass [kJ]. docs/theory/host.md section 9.
-   real(wp) function kinetic_energy(domain, dofs, mass, state) result(energy)
-      type(domain_t), intent(in) :: domain
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: mass(:)   !< (unknowns) Of bodies [Mg].
-      type(model_state_t), intent(in) :: state
+   real(wp) function kinetic_energy(run, state) result(energy)
+      type(run_t), intent(in) :: run
+      type(model_state_t), intent(in) :: state   !< State of the run before or after a step.
       real(wp) :: nodal(DISPLACEMENTS, 6), v(DISPLACEMENTS), n
       integer :: e, g, p, i
 
       energy = 0.0_wp
-      do e = 1, size(domain%mesh%t6, 2)
-         if (.not. is_present(state, e)) cycle
-         nodal = state%v(:DISPLACEMENTS, domain%mesh%t6(:, e))
-         do g = 1, domain%rule
-            p = (e - 1)*domain%rule + g
-            v = matmul(nodal, domain%gauss(g, e)%n)
-            n = state%e(p)/(1 + state%e(p))
-            energy = energy + 0.5_wp*domain%gauss(g, e)%weight*dot_product(v, v) &
-                     *mixture_density(domain, domain%regions(domain%region_of(e)), n, state%s(p))
+      associate (domain => run%model%domain, dofs => run%model%dofs, mass => run%constraint%mass)
+         do e = 1, size(domain%mesh%t6, 2)
+            if (.not. is_present(state, e)) cycle
+            nodal = state%v(:DISPLACEMENTS, domain%mesh%t6(:, e))
+            do g = 1, domain%rule
+               p = (e - 1)*domain%rule + g
+               v = matmul(nodal, domain%gauss(g, e)%n)
+               n = state%e(p)/(1 + state%e(p))
+               energy = energy + 0.5_wp*domain%gauss(g, e)%weight*dot_product(v, v) &
+                        *mixture_density(domain, domain%regions(domain%region_of(e)), n, state%s(p))
+            end do
          end do
-      end do
-      do i = 1, dofs%n
-         energy = energy + 0.5_wp*mass(i)*state%v(dofs%field(i), dofs%node(i))**2
-      end do
+         do i = 1, dofs%n
+            energy = energy + 0.5_wp*mass(i)*state%v(dofs%field(i), dofs%node(i))**2
+         end do
+      end associate
    end function kinetic_energy
 
    !> After a step is booked: the largest work so far and, in a dynamic stage, the most energy created, which is what
@@ -346,16 +337,6 @@ contains
       end if
       if (scheme%has_inertia) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
-
-   !> After book_creation: counts the steps in a row in which more energy is created than a stage allows. The first step
-   !> of a load has no other work to be compared with than its own, of which the scheme creates up to an eighth:
-   !> docs/theory/host.md section 9.
-   pure subroutine count_creation(share, ledger)
-      real(wp), intent(in) :: share   !< created_energy of the stage [-].
-      type(ledger_t), intent(inout) :: ledger
-
-      ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, ledger%most_created > allowed_creation(share, ledger))
-   end subroutine count_creation
 
    !> Created energy up to which nothing is said: a share of the largest work, and what no balance can tell from zero.
    !> Of a body at rest the work is as small as that. [kJ] docs/theory/host.md section 9.

@@ -30,33 +30,13 @@ module field_files
    real(wp), parameter :: PICTURES = 50.0_wp   !< Fields of a stage with controlled steps, if no key says when.
    real(wp), parameter :: ON_TIME = 1.0e-6_wp   !< Distance from a time of output, share of output_dt, that is rounding.
 
-   !> A field of the files: at nodes, or the mean over the volume of an element.
+   !> A field of a file, for results.xdmf.
    type :: field_t
       character(16) :: name
       character(8) :: unit
-      character(72) :: meaning
-      logical :: of_nodes
-      integer :: components
+      logical :: of_nodes     !< Else it is the mean over the volume of every element.
+      logical :: is_vector
    end type field_t
-
-   integer, parameter :: N_DISPLACEMENT = 1, N_VELOCITY = 2, N_ACCELERATION = 3, N_P_W = 4, N_P_C = 5, N_P_A = 6, &
-                         N_FIRST_CELL = 7, N_S_W = 14, N_GROUND = 15
-   type(field_t), parameter :: LIST(15) = [ &
-      field_t('displacement', 'm', 'u_r, u_z, 0', .true., 3), &
-      field_t('velocity', 'm/s', 'v_r, v_z, 0', .true., 3), &
-      field_t('acceleration', 'm/s2', 'a_r, a_z, 0', .true., 3), &
-      field_t('p_w', 'kPa', 'pore water pressure, compression positive', .true., 1), &
-      field_t('p_c', 'kPa', 'suction p_a - p_w', .true., 1), &
-      field_t('p_a', 'kPa', 'pore air pressure, compression positive', .true., 1), &
-      field_t('s_rr', 'kPa', 'effective stress, tension positive', .false., 1), &
-      field_t('s_zz', 'kPa', 'effective stress, tension positive', .false., 1), &
-      field_t('s_tt', 'kPa', 'effective stress, tension positive', .false., 1), &
-      field_t('s_rz', 'kPa', 'effective stress', .false., 1), &
-      field_t('p', 'kPa', 'mean effective stress, compression positive', .false., 1), &
-      field_t('q', 'kPa', 'deviator stress: square root of 3 J_2', .false., 1), &
-      field_t('e', '-', 'void ratio', .false., 1), &
-      field_t('S_w', '-', 'degree of saturation', .false., 1), &
-      field_t('ground', '-', '1: part of the ground at this time, 0: not', .false., 1)]
 contains
    !> Exchanges the times of the fields that are written.
    subroutine exchange(self, archive)
@@ -68,22 +48,20 @@ contains
    end subroutine exchange
 
    !> A new run writes its mesh and its start. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(field_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (run%steps > 0) return
       allocate (self%times(0))
-      call write_mesh(self%folder, trim(model%origin%name), model%origin%fingerprint, model%domain, fault)
-      if (fault%code == 0) call write_frame(self%folder, model%domain, run%state, self%times, fault)
+      call write_mesh(self%folder, run%model, fault)
+      if (fault%code == 0) call write_frame(self, run, fault)
    end subroutine begins
 
    !> Writes the fields after a step where they are due within a stage. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine taken_over(self, model, run, fault)
+   subroutine taken_over(self, run, fault)
       class(field_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       real(wp) :: now, before
@@ -93,7 +71,7 @@ contains
       due = .false.
       now = run%state%time - run%at%t_start
       before = run%state%time - run%scheme%dt - run%at%t_start
-      associate (stage => model%stages(run%at%stage))
+      associate (stage => run%stage)
          if (stage%output_dt > 0.0_wp) then
             due = abs(now/stage%output_dt - anint(now/stage%output_dt)) < ON_TIME
          else if (stage%fields > 0) then
@@ -102,7 +80,7 @@ contains
             due = picture_of(now/stage%duration) > picture_of(before/stage%duration)
          end if
       end associate
-      if (due) call write_frame(self%folder, model%domain, run%state, self%times, fault)
+      if (due) call write_frame(self, run, fault)
    contains
       !> Number of the last picture up to a share of the stage.
       pure integer function picture_of(share)
@@ -113,19 +91,18 @@ contains
    end subroutine taken_over
 
    !> Writes the fields at the end of a stage; after a failure too. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(field_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      call write_frame(self%folder, model%domain, run%state, self%times, fault)
+      call write_frame(self, run, fault)
    end subroutine stage_ends
 
    !> mesh.h5: nodes, elements, quadrature points, region of every element. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine write_mesh(folder, model, fingerprint, domain, fault)
-      character(*), intent(in) :: folder, model, fingerprint   !< Name and fingerprint of the scene.
-      type(domain_t), intent(in) :: domain
+   subroutine write_mesh(folder, model, fault)
+      character(*), intent(in) :: folder
+      type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
       type(h5_t) :: file
       integer :: e, g
@@ -133,19 +110,19 @@ contains
 
       call new_file(file, folder//'/mesh.h5')
       call put_text(file, 'kind', 'mesh of mud_host')
-      call put_text(file, 'scene', model)
-      call put_text(file, 'fingerprint', fingerprint)
-      call put_text(file, 'axes', merge('r, z; axisymmetric', 'x, y; plane strain', domain%axisymmetric))
-      call put(file, 'nodes', domain%mesh%x, 'm', 'coordinates r, z (x, y in plane strain) of '// &
-               'every node')
-      call put(file, 'elements', domain%mesh%t6 - 1, '-', 'nodes of every element from 0: vertices, then the '// &
-               'middles of the sides 1-2, 2-3, 3-1')
-      call put(file, 'regions', domain%region_of, '-', 'number of the region of every element, as in the scene')
-      call put(file, 'points/position', reshape([((domain%gauss(g, e)%x, g=1, domain%rule), &
-               e=1, size(domain%mesh%t6, 2))], [2, size(domain%gauss)]), 'm', 'r, z (x, y in plane strain) of '// &
-               'every quadrature point')
-      call put(file, 'points/weight', [((domain%gauss(g, e)%weight, g=1, domain%rule), e=1, size(domain%mesh%t6, 2))], &
-               'm3', 'volume of every quadrature point (per m of thickness in plane strain)')
+      call put_text(file, 'scene', trim(model%origin%name))
+      call put_text(file, 'fingerprint', model%origin%fingerprint)
+      associate (domain => model%domain, n => model%domain%rule, elements => size(model%domain%mesh%t6, 2))
+         call put_text(file, 'axes', merge('r, z; axisymmetric', 'x, y; plane strain', domain%axisymmetric))
+         call put(file, 'nodes', domain%mesh%x, 'm', 'coordinates r, z (x, y in plane strain) of every node')
+         call put(file, 'elements', domain%mesh%t6 - 1, '-', 'nodes of every element from 0: vertices, then the '// &
+                  'middles of the sides 1-2, 2-3, 3-1')
+         call put(file, 'regions', domain%region_of, '-', 'number of the region of every element, as in the scene')
+         call put(file, 'points/position', reshape([((domain%gauss(g, e)%x, g=1, n), e=1, elements)], &
+                  [2, n*elements]), 'm', 'r, z (x, y in plane strain) of every quadrature point')
+         call put(file, 'points/weight', [((domain%gauss(g, e)%weight, g=1, n), e=1, elements)], &
+                  'm3', 'volume of every quadrature point (per m of thickness in plane strain)')
+      end associate
       call write_file(file, good)
       if (.not. good) call raise_unwritten(folder//'/mesh.h5', fault)
    end subroutine write_mesh
@@ -171,96 +148,73 @@ contains
       call close_file(file)
    end subroutine check_mesh
 
-   !> fields_NUMBER.h5 of a state, and results.xdmf up to it. Units: see LIST. Fault EXIT_OUTPUT: they cannot be
-   !> written.
-   subroutine write_frame(folder, domain, state, times, fault)
-      character(*), intent(in) :: folder
-      type(domain_t), intent(in) :: domain
-      type(model_state_t), intent(in) :: state
-      real(wp), allocatable, intent(inout) :: times(:)   !< Times of the fields so far, this one added [s].
+   !> fields_NUMBER.h5 of the present state, and results.xdmf up to it. Fault EXIT_OUTPUT: they cannot be written.
+   subroutine write_frame(self, run, fault)
+      class(field_observer_t), intent(inout) :: self
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
+      character(*), parameter :: STRESS = 'effective stress, tension positive'
       type(h5_t) :: file
-      real(wp) :: x(FIELDS, size(state%x, 2)), cells(8, size(domain%mesh%t6, 2))
+      type(field_t), allocatable :: list(:)
+      real(wp) :: x(FIELDS, size(run%state%x, 2)), cells(8, size(run%model%domain%mesh%t6, 2))
       character(:), allocatable :: path
-      integer :: i
       logical :: good
 
-      times = [times, state%time]
-      path = folder//'/'//file_of(size(times))
-      call all_pressures(domain, state, x)
+      self%times = [self%times, run%state%time]
+      path = self%folder//'/'//file_of(size(self%times))
       call new_file(file, path)
       call put_text(file, 'kind', 'fields of mud_host')
-      call put(file, 'time', [state%time], 's', 'time')
-      do i = 1, size(LIST)
-         if (.not. has(domain, state, i)) cycle
-         select case (i)
-         case (N_DISPLACEMENT)
-            call put_vector(state%x(:DISPLACEMENTS, :))
-         case (N_VELOCITY)
-            call put_vector(state%v(:DISPLACEMENTS, :))
-         case (N_ACCELERATION)
-            call put_vector(state%a)
-         case (N_P_W)
-            call put_list(x(AT_P_W, :))
-         case (N_P_C)
-            call put_list(x(AT_P_C, :))
-         case (N_P_A)
-            call put_list(x(AT_P_W, :) + x(AT_P_C, :))
-         case (N_GROUND)
-            call put_list(merge(1.0_wp, 0.0_wp, state%present))
-         case default
-            if (i == N_FIRST_CELL) call means(domain, state, cells)
-            call put_list(cells(i - N_FIRST_CELL + 1, :))
-         end select
-      end do
-      call put(file, 'points/stress', state%stress(1:4, :), 'kPa', 'effective stress rr, zz, tt, rz of every '// &
-               'quadrature point, tension positive')
-      call put(file, 'points/e', state%e, '-', 'void ratio of every quadrature point')
-      call put(file, 'points/S_w', state%s, '-', 'degree of saturation of every quadrature point')
+      call put(file, 'time', [run%state%time], 's', 'time')
+      allocate (list(0))
+      associate (domain => run%model%domain, state => run%state)
+         call all_pressures(domain, state, x)
+         call means(domain, state, cells)
+         call add('nodes', 'displacement', 'm', 'u_r, u_z, 0', with_zero(state%x))
+         call add('nodes', 'velocity', 'm/s', 'v_r, v_z, 0', with_zero(state%v))
+         call add('nodes', 'acceleration', 'm/s2', 'a_r, a_z, 0', with_zero(state%a))
+         if (domain%with_w) call add('nodes', 'p_w', 'kPa', 'pore water pressure, compression positive', &
+                                     x(AT_P_W:AT_P_W, :))
+         if (domain%with_c) then
+            call add('nodes', 'p_c', 'kPa', 'suction p_a - p_w', x(AT_P_C:AT_P_C, :))
+            call add('nodes', 'p_a', 'kPa', 'pore air pressure, compression positive', &
+                     x(AT_P_W:AT_P_W, :) + x(AT_P_C:AT_P_C, :))
+         end if
+         call add('cells', 's_rr', 'kPa', STRESS, cells(1:1, :))
+         call add('cells', 's_zz', 'kPa', STRESS, cells(2:2, :))
+         call add('cells', 's_tt', 'kPa', STRESS, cells(3:3, :))
+         call add('cells', 's_rz', 'kPa', 'effective stress', cells(4:4, :))
+         call add('cells', 'p', 'kPa', 'mean effective stress, compression positive', cells(5:5, :))
+         call add('cells', 'q', 'kPa', 'deviator stress: square root of 3 J_2', cells(6:6, :))
+         call add('cells', 'e', '-', 'void ratio', cells(7:7, :))
+         if (domain%with_c) call add('cells', 'S_w', '-', 'degree of saturation', cells(8:8, :))
+         if (allocated(state%present)) call add('cells', 'ground', '-', '1: part of the ground at this time, 0: not', &
+                                                reshape(merge(1.0_wp, 0.0_wp, state%present), [1, size(cells, 2)]))
+         call put(file, 'points/stress', state%stress(1:4, :), 'kPa', 'effective stress rr, zz, tt, rz of every '// &
+                  'quadrature point, tension positive')
+         call put(file, 'points/e', state%e, '-', 'void ratio of every quadrature point')
+         call put(file, 'points/S_w', state%s, '-', 'degree of saturation of every quadrature point')
+      end associate
       call write_file(file, good)
       if (.not. good) call raise_unwritten(path, fault)
-      if (good) call write_xdmf(folder, domain, state, times, fault)
+      if (good) call write_xdmf(self, run%model%domain, list, fault)
    contains
-      subroutine put_list(values)
-         real(wp), intent(in) :: values(:)
+      subroutine add(center, name, unit, meaning, values)
+         character(*), intent(in) :: center, name, unit, meaning
+         real(wp), intent(in) :: values(:, :)   !< (1 or 3, nodes or elements)
 
-         call put(file, place_of(i), values, trim(LIST(i)%unit), trim(LIST(i)%meaning))
-      end subroutine put_list
+         if (size(values, 1) == 1) call put(file, center//'/'//name, values(1, :), unit, meaning)
+         if (size(values, 1) == 3) call put(file, center//'/'//name, values, unit, meaning)
+         list = [list, field_t(name, unit, center == 'nodes', size(values, 1) == 3)]
+      end subroutine add
 
-      subroutine put_vector(values)
-         real(wp), intent(in) :: values(:, :)
+      pure function with_zero(values) result(three)
+         real(wp), intent(in) :: values(:, :)   !< (2 or more, nodes)
          real(wp) :: three(3, size(values, 2))
 
-         three(1:2, :) = values
+         three(:DISPLACEMENTS, :) = values(:DISPLACEMENTS, :)
          three(3, :) = 0.0_wp
-         call put(file, place_of(i), three, trim(LIST(i)%unit), trim(LIST(i)%meaning))
-      end subroutine put_vector
+      end function with_zero
    end subroutine write_frame
-
-   !> Whether the scene has the field.
-   pure logical function has(domain, state, i)
-      type(domain_t), intent(in) :: domain
-      type(model_state_t), intent(in) :: state
-      integer, intent(in) :: i
-
-      select case (i)
-      case (N_P_W)
-         has = domain%with_w
-      case (N_P_C, N_P_A, N_S_W)
-         has = domain%with_c
-      case (N_GROUND)
-         has = allocated(state%present)
-      case default
-         has = .true.
-      end select
-   end function has
-
-   pure function place_of(i) result(place)
-      integer, intent(in) :: i
-      character(:), allocatable :: place
-
-      place = trim(merge('nodes', 'cells', LIST(i)%of_nodes))//'/'//trim(LIST(i)%name)
-   end function place_of
 
    pure function file_of(number) result(name)
       integer, intent(in) :: number
@@ -310,11 +264,10 @@ contains
       end do
    end subroutine means
 
-   subroutine write_xdmf(folder, domain, state, times, fault)
-      character(*), intent(in) :: folder
+   subroutine write_xdmf(self, domain, list, fault)
+      class(field_observer_t), intent(in) :: self
       type(domain_t), intent(in) :: domain
-      type(model_state_t), intent(in) :: state
-      real(wp), intent(in) :: times(:)   !< [s]
+      type(field_t), intent(in) :: list(:)
       type(fault_t), intent(inout) :: fault
       character(*), parameter :: LF = new_line('a')
       character(:), allocatable :: text, mesh, attributes
@@ -330,23 +283,25 @@ contains
              '</Geometry>'//LF
       text = '<?xml version="1.0"?>'//LF//'<Xdmf Version="3.0"><Domain>'//LF// &
              '<Grid Name="results" GridType="Collection" CollectionType="Temporal">'//LF
-      do k = 1, size(times)
+      do k = 1, size(self%times)
          attributes = ''
-         do i = 1, size(LIST)
-            if (.not. has(domain, state, i)) cycle
-            attributes = attributes//'    <Attribute Name="'//trim(LIST(i)%name)//' ['//trim(LIST(i)%unit)// &
-                         ']" AttributeType="'//merge('Vector', 'Scalar', LIST(i)%components == 3)// &
-                         '" Center="'//merge('Node', 'Cell', LIST(i)%of_nodes)//'">'// &
-                         item(whole(merge(nodes, elements, LIST(i)%of_nodes))//trim(merge(' 3', '  ', &
-                              LIST(i)%components == 3)), 'Float', trim(file_of(k)), place_of(i))//'</Attribute>'//LF
+         do i = 1, size(list)
+            associate (one => list(i))
+               attributes = attributes//'    <Attribute Name="'//trim(one%name)//' ['//trim(one%unit)// &
+                            ']" AttributeType="'//merge('Vector', 'Scalar', one%is_vector)// &
+                            '" Center="'//merge('Node', 'Cell', one%of_nodes)//'">'// &
+                            item(whole(merge(nodes, elements, one%of_nodes))//trim(merge(' 3', '  ', one%is_vector)), &
+                                 'Float', trim(file_of(k)), merge('nodes', 'cells', one%of_nodes)//'/'// &
+                                 trim(one%name))//'</Attribute>'//LF
+            end associate
          end do
-         write (time, '(es24.16e3)') times(k)
+         write (time, '(es24.16e3)') self%times(k)
          text = text//'  <Grid Name="results" GridType="Uniform"><Time Value="'//trim(adjustl(time))//'"/>'//LF// &
                 mesh//attributes//'  </Grid>'//LF
       end do
       text = text//'</Grid>'//LF//'</Domain></Xdmf>'//LF
-      call write_whole(folder//'/results.xdmf', bytes_of(text), good)
-      if (.not. good) call raise_unwritten(folder//'/results.xdmf', fault)
+      call write_whole(self%folder//'/results.xdmf', bytes_of(text), good)
+      if (.not. good) call raise_unwritten(self%folder//'/results.xdmf', fault)
    end subroutine write_xdmf
 
    pure function item(dimensions, number, file, place) result(text)

@@ -6,15 +6,13 @@ module ledger_observer
    use archive, only: archive_t
    use csv, only: csv_t, check_csv, write_row, hand_over, close_csv, is_open
    use effect_indicators, only: indicators_of, indicator_columns
-   use degrees_of_freedom, only: dofs_t
-   use energy_ledger, only: ledger_t, exchange_ledger, book_step, book_creation, count_creation, allowed_creation, &
+   use energy_ledger, only: ledger_t, exchange_ledger, book_step, book_creation, allowed_creation, &
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
    use faults, only: fault_t, raise
-   use generalised_alpha, only: scheme_t, has_inertia
+   use generalised_alpha, only: has_inertia
    use kinds, only: wp
    use linear_system, only: T_CONTACT
-   use model_types, only: model_t
    use run_observer, only: observer_t
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
@@ -32,7 +30,8 @@ module ledger_observer
    character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
       'measure = ''change'' where weight rests'
    !> Steps in which the work of a load that has just begun exceeds by far that of its first step: it grows with the
-   !> third power of their number and faster.
+   !> third power of their number and faster. In its first step there is no other work to be compared with, and the
+   !> scheme creates up to an eighth of that: docs/theory/host.md section 9.
    real(wp), parameter :: PATIENCE = 5.0_wp
 
    type, extends(observer_t) :: ledger_observer_t
@@ -63,9 +62,8 @@ contains
    end subroutine exchange
 
    !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: ledger.csv is missing or too short.
-   subroutine fits(self, model, run, fault)
+   subroutine fits(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -73,49 +71,43 @@ contains
    end subroutine fits
 
    !> Opens ledger.csv. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (run%steps == 0 .and. any(model%domain%regions%stiffness_damping > 0.0_wp)) &
+      if (run%steps == 0 .and. any(run%model%domain%regions%stiffness_damping > 0.0_wp)) &
          allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
-      if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS//indicator_columns(model), &
+      if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS//indicator_columns(run%model), &
                                                   run%steps > 0, self%table, fault)
    end subroutine begins
 
    !> Books a step: energies, work, outflow, contacts; and ends a run that creates energy: in PATIENCE steps in a row
    !> more than the stage may, or in its last one. docs/theory/host.md section 9. Fault EXIT_ENERGY.
-   subroutine step(self, model, run, fault)
+   subroutine step(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp), allocatable :: contact_force(:)
-      real(wp) :: t0
+      real(wp) :: force(run%model%dofs%n), t0
 
-      associate (ledger => self%ledger, stage => model%stages(run%at%stage))
+      associate (ledger => self%ledger, stage => run%stage)
          if (run%at%step == 1) then
-            ledger%kinetic_0 = ledger%kinetic_0 + kinetic_energy(model%domain, model%dofs, run%constraint%mass, &
-                                                                 run%state) - ledger%kinetic
+            ledger%kinetic_0 = ledger%kinetic_0 + kinetic_energy(run, run%state) - ledger%kinetic
             ! The velocities of a stage without inertia are no motion: each stage begins its own account.
             if (run%steps > 1) ledger%open_0 = imbalance(ledger)
          end if
          t0 = clock()
-         allocate (contact_force(0))
-         if (allocated(run%system%contacts)) then
-            contact_force = mean_contact_forces(run, model%dofs)
-            call add_elapsed(run%system%seconds(T_CONTACT), t0)
-         end if
-         if (size(run%constraint%added) > 0) call add_means(run, model%dofs, run%scheme, contact_force)
-         call book_step(model, contact_force, run, self%damping_stress, ledger)
-         call book_creation(run%scheme, stage%tolerance, model%dofs, run%assembly%scale, run%next%x - run%state%x, &
+         force = mean_contact_forces(run)
+         if (allocated(run%system%contacts)) call add_elapsed(run%system%seconds(T_CONTACT), t0)
+         call add_means(run, force)
+         call book_step(force, run, self%damping_stress, ledger)
+         call book_creation(run%scheme, stage%tolerance, run%model%dofs, run%assembly%scale, run%next%x - run%state%x, &
                             ledger)
-         if (has_inertia(stage%kind)) call count_creation(stage%created_energy, ledger)
-         self%indicators = indicators_of(model, run)
+         self%indicators = indicators_of(run)
          run%news%contact_work = ledger%contact
          if (.not. has_inertia(stage%kind)) return
+         ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, &
+                                ledger%most_created > allowed_creation(stage%created_energy, ledger))
          if (ledger%overdue < merge(1.0_wp, PATIENCE, run%news%last)) return
          call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(run%next%time)// &
                     ' s: the run has created '//amount(ledger)//', allowed '//short(100*stage%created_energy)// &
@@ -123,42 +115,37 @@ contains
       end associate
    end subroutine step
 
-   !> Adds the means of forces of terms to those of the contacts, which may be none yet [kN].
-   !> docs/theory/host.md section 9.
-   subroutine add_means(run, dofs, scheme, force)
+   !> Adds the means of forces of terms to those of the contacts [kN]. docs/theory/host.md section 9.
+   subroutine add_means(run, force)
       type(run_t), intent(in) :: run
-      type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      real(wp), allocatable, intent(inout) :: force(:)   !< (unknowns) or (0) before.
+      real(wp), intent(inout) :: force(:)   !< (unknowns)
       integer :: i
 
-      if (size(force) == 0) force = spread(0.0_wp, 1, dofs%n)
       do i = 1, size(run%constraint%added)
          associate (one => run%constraint%added(i)%it)
-            if (one%acts) call one%add_means(dofs, scheme, run%state, run%next, force)
+            if (one%acts) call one%add_means(run%model%dofs, run%scheme, run%state, run%next, force)
          end associate
       end do
    end subroutine add_means
 
-   !> Mean of the forces of the contacts at the ends of a step, to be added to the internal ones; zero where the
-   !> displacements are refused [kN]. (unknowns)
-   function mean_contact_forces(run, dofs) result(force)
+   !> Mean of the forces of the contacts at the ends of a step, to be added to the internal ones; zero without contacts
+   !> and where the displacements are refused [kN]. (unknowns)
+   function mean_contact_forces(run) result(force)
       type(run_t), intent(inout) :: run   !< The contacts are probed.
-      type(dofs_t), intent(in) :: dofs
-      real(wp) :: force(dofs%n)
+      real(wp) :: force(run%model%dofs%n)
       real(wp), allocatable :: before(:), after(:)
 
       force = 0.0_wp
-      if (.not. run%system%contacts%forces(dofs, run%state%x, before)) return
-      if (.not. run%system%contacts%forces(dofs, run%next%x, after)) return
+      if (.not. allocated(run%system%contacts)) return
+      if (.not. run%system%contacts%forces(run%model%dofs, run%state%x, before)) return
+      if (.not. run%system%contacts%forces(run%model%dofs, run%next%x, after)) return
       force = 0.5_wp*(before + after)
    end function mean_contact_forces
 
    !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
    !> written.
-   subroutine taken_over(self, model, run, fault)
+   subroutine taken_over(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -178,13 +165,12 @@ contains
 
    !> Warns at the end of a dynamic stage that has created much, on standard error, also where the run is quiet. From
    !> ALARMING_SHARE of the largest work on; nothing beyond what has ended the run.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (stage => model%stages(run%at%stage), ledger => self%ledger)
+      associate (stage => run%stage, ledger => self%ledger)
          if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
          if (.not. has_inertia(stage%kind) .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
          if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
@@ -194,9 +180,8 @@ contains
    end subroutine stage_ends
 
    !> Closes ledger.csv. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, model, run, fault)
+   subroutine ends(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 

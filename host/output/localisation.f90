@@ -5,13 +5,11 @@
 module localisation
    use acoustic_tensor, only: determinant_of, least_determinant, loses_ellipticity
    use archive, only: archive_t
-   use carried_slopes, only: slopes_t
    use faults, only: fault_t
    use kinds, only: wp, PI
-   use model_types, only: model_t
-   use porous_domain, only: domain_t, model_state_t, is_present, strain_of
+   use porous_domain, only: is_present, strain_of
    use run_observer, only: observer_t
-   use run_state, only: run_t
+   use run_state, only: run_t, now_in
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning
@@ -55,9 +53,8 @@ contains
    end subroutine exchange
 
    !> Makes room for the points.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(localisation_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -66,9 +63,8 @@ contains
 
    !> Books a step, gives its share to the ledger, and tells a share above TOLD_SHARE, once, on standard error. Points
    !> are looked at in parallel, and added up in their order.
-   subroutine step(self, model, run, fault)
+   subroutine step(self, run, fault)
       class(localisation_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: work(:)
@@ -77,12 +73,11 @@ contains
       integer :: e, p, worst
 
       allocate (work(size(self%work)), lost(size(self%work)))
-      associate (m => model%domain)
+      associate (m => run%model%domain)
          !$omp parallel do num_threads(merge(m%threads, 1, size(m%region_of) >= WORTH_THREADS)) schedule(static) &
          !$omp default(shared) private(e)
          do e = 1, size(m%region_of)
-            call look_at_element(m, e, run%assembly%slopes, run%state, run%next, &
-                                 work((e - 1)*m%rule + 1:e*m%rule), lost((e - 1)*m%rule + 1:e*m%rule))
+            call look_at_element(run, e, work((e - 1)*m%rule + 1:e*m%rule), lost((e - 1)*m%rule + 1:e*m%rule))
          end do
          !$omp end parallel do
       end associate
@@ -102,15 +97,13 @@ contains
       end if
       if (self%told .or. .not. self%is_above) return
       self%told = .true.
-      call tell(self, model%domain, model%stages(run%at%stage)%name, run%next%time, run%news%localised, worst)
+      call tell(self, run, worst)
    end subroutine step
 
    !> The points of an element: shear work of the step, where positive, and whether the tangent has lost ellipticity.
-   pure subroutine look_at_element(domain, e, slopes, old, new, work, lost)
-      type(domain_t), intent(in) :: domain
+   pure subroutine look_at_element(run, e, work, lost)
+      type(run_t), intent(in) :: run
       integer, intent(in) :: e
-      type(slopes_t), intent(in) :: slopes
-      type(model_state_t), intent(in) :: old, new
       real(wp), intent(out) :: work(:)   !< [kJ]
       logical, intent(out) :: lost(:)
       real(wp) :: du(DISPLACEMENTS, 6), strain(4), stress(4)
@@ -118,47 +111,46 @@ contains
 
       work = 0.0_wp
       lost = .false.
-      if (.not. is_present(new, e)) return
-      associate (node => domain%mesh%t6(:, e))
-         du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
+      associate (domain => run%model%domain, old => run%state, new => run%next)
+         if (.not. is_present(new, e)) return
+         du = new%x(:DISPLACEMENTS, domain%mesh%t6(:, e)) - old%x(:DISPLACEMENTS, domain%mesh%t6(:, e))
+         do g = 1, domain%rule
+            p = (e - 1)*domain%rule + g
+            strain = strain_of(domain%gauss(g, e), du)
+            stress = 0.5_wp*(old%stress(:4, p) + new%stress(:4, p))
+            stress(:3) = stress(:3) - sum(stress(:3))/3
+            work(g) = max(0.0_wp, domain%gauss(g, e)%weight*dot_product(stress, strain))
+            if (domain%regions(domain%region_of(e))%law%has_energy .or. .not. work(g) > 0.0_wp) cycle
+            lost(g) = loses_ellipticity(determinant_of(run%assembly%slopes%strain(:, :, p)))
+         end do
       end associate
-      do g = 1, domain%rule
-         p = (e - 1)*domain%rule + g
-         strain = strain_of(domain%gauss(g, e), du)
-         stress = 0.5_wp*(old%stress(:4, p) + new%stress(:4, p))
-         stress(:3) = stress(:3) - sum(stress(:3))/3
-         work(g) = max(0.0_wp, domain%gauss(g, e)%weight*dot_product(stress, strain))
-         if (domain%regions(domain%region_of(e))%law%has_energy .or. .not. work(g) > 0.0_wp) cycle
-         lost(g) = loses_ellipticity(determinant_of(slopes%strain(:, :, p)))
-      end do
    end subroutine look_at_element
 
    !> Prints the sentence; the end of the run repeats it.
-   subroutine tell(self, domain, stage, time, share, worst)
+   subroutine tell(self, run, worst)
       type(localisation_observer_t), intent(in) :: self
-      type(domain_t), intent(in) :: domain
-      character(*), intent(in) :: stage   !< Name of the stage.
-      real(wp), intent(in) :: time, share   !< [s], [-]
+      type(run_t), intent(in) :: run
       integer, intent(in) :: worst   !< Point with the most work.
+      real(wp) :: x(2)
 
-      associate (x => domain%gauss(mod(worst - 1, domain%rule) + 1, (worst - 1)/domain%rule + 1)%x)
-         call print_warning('stage '//trim(stage)//', time '//short(time)//' s: shear localises. '// &
-            short(0.1_wp*nint(1000*share))//' % of the shear work so far is done where the tangent of the soil has '// &
-            'lost ellipticity (column localised of ledger.csv; above '//short(100*TOLD_SHARE)//' % since '// &
-            short(self%since)//' s), most of it at ('//short(x(1))//', '//short(x(2))//') m in a band with its '// &
-            'normal at '//whole(nint(self%normal*180/PI))//' degrees from r towards z. Displacements depend on the '// &
-            'cell there and have no limit: state the cell with them, or give the &region a viscosity.')
+      associate (n => run%model%domain%rule)
+         x = run%model%domain%gauss(mod(worst - 1, n) + 1, (worst - 1)/n + 1)%x
       end associate
+      call print_warning(now_in(run)//'shear localises. '//short(0.1_wp*nint(1000*run%news%localised))// &
+         ' % of the shear work so far is done where the tangent of the soil has lost ellipticity (column localised '// &
+         'of ledger.csv; above '//short(100*TOLD_SHARE)//' % since '//short(self%since)//' s), most of it at ('// &
+         short(x(1))//', '//short(x(2))//') m in a band with its normal at '//whole(nint(self%normal*180/PI))// &
+         ' degrees from r towards z. Displacements depend on the cell there and have no limit: state the cell with '// &
+         'them, or give the &region a viscosity.')
    end subroutine tell
 
    !> Forgets all where displacements begin to count anew.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(localisation_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (.not. (run%news%complete .and. model%stages(run%at%stage)%zero_displacements)) return
+      if (.not. (run%news%complete .and. run%stage%zero_displacements)) return
       self%shear = 0.0_wp
       self%localised = 0.0_wp
       self%work = 0.0_wp

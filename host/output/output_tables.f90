@@ -10,7 +10,6 @@ module output_tables
    use kinds, only: wp
    use model_types, only: model_t, point_t
    use named_points, only: unknowns_at, motion_at
-   use porous_domain, only: domain_t, model_state_t
    use reaction_rows, only: reaction_columns, reaction_row
    use run_observer, only: observer_t
    use run_state, only: run_t
@@ -48,50 +47,47 @@ contains
 
    !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: a table is missing, too short or cannot be
    !> written.
-   subroutine fits(self, model, run, fault)
+   subroutine fits(self, run, fault)
       class(table_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       call check_csv(self%folder//'/histories.csv', self%history%bytes, fault)
-      if (fault%code == 0 .and. has_contact_table(model)) &
+      if (fault%code == 0 .and. has_contact_table(run%model)) &
          call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
       if (fault%code == 0 .and. self%reactions%bytes > 0) &
-         call check_csv(reactions_of(self%folder, model%stages(run%at%stage)%name), self%reactions%bytes, fault)
+         call check_csv(reactions_of(self%folder, run%stage%name), self%reactions%bytes, fault)
    end subroutine fits
 
    !> Opens the tables; a new run writes its start. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(table_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       logical :: resume
 
       resume = run%steps > 0
-      call open_table(self%folder//'/histories.csv', history_columns(model), resume, self%history, fault)
-      if (has_contact_table(model)) call open_table(self%folder//'/contact.csv', contact_columns(model), resume, &
-                                                    self%contact, fault)
+      call open_table(self%folder//'/histories.csv', history_columns(run%model), resume, self%history, fault)
+      if (has_contact_table(run%model)) call open_table(self%folder//'/contact.csv', contact_columns(run%model), &
+                                                        resume, self%contact, fault)
       if (fault%code /= 0 .or. resume) return
-      call write_points(self%folder, model, fault)
-      if (fault%code == 0) call write_history(self%history, model, run%state, fault)
+      call write_points(self%folder, run%model, fault)
+      if (fault%code == 0) call write_history(self%history, run, fault)
    end subroutine begins
 
    !> Writes the rows of a step that are due. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine taken_over(self, model, run, fault)
+   subroutine taken_over(self, run, fault)
       class(table_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (is_open(self%contact)) then
-         write (self%contact%row, NUMBERS) contact_row(model, run)
+         write (self%contact%row, NUMBERS) contact_row(run)
          call write_row(self%contact, fault)
       end if
-      if (mod(run%at%step, model%stages(run%at%stage)%every) == 0 .or. run%news%last) then
-         call write_history(self%history, model, run%state, fault)
-         if (fault%code == 0) call write_reactions(self, model, run, fault)
+      if (mod(run%at%step, run%stage%every) == 0 .or. run%news%last) then
+         call write_history(self%history, run, fault)
+         if (fault%code == 0) call write_reactions(self, run, fault)
       end if
       call hand_over(self%history, fault)
       call hand_over(self%contact, fault)
@@ -100,25 +96,23 @@ contains
 
    !> Ends the table of reactions, and writes the tables of a stage; after a failure too, for what was computed. Fault
    !> EXIT_OUTPUT: a file cannot be written.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(table_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: name
 
       call close_csv(self%reactions, fault)
       self%reactions%bytes = 0
-      name = trim(model%stages(run%at%stage)%name)
-      call write_fields(self%folder, model%domain, name, run%state, fault)
+      name = trim(run%stage%name)
+      call write_fields(self%folder//'/', run, name//'.csv', fault)
       if (allocated(run%system%contacts)) call write_table(self%folder//'/contact_'//name//'.csv', &
-         'contact,r,z,weight,coverage,gap,pressure,shear', contact_nodes(model, run), fault)
+         'contact,r,z,weight,coverage,gap,pressure,shear', contact_nodes(run), fault)
    end subroutine stage_ends
 
    !> Closes the tables; the first that fails is reported. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, model, run, fault)
+   subroutine ends(self, run, fault)
       class(table_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -148,46 +142,46 @@ contains
 
    !> A row of histories.csv: time and the columns of every named point. Units [s, m, kPa, m/s, m/s2, kPa, -, -],
    !> stresses tension positive. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine write_history(table, model, state, fault)
+   subroutine write_history(table, run, fault)
       type(csv_t), intent(inout) :: table
-      type(model_t), intent(in) :: model
-      type(model_state_t), intent(in) :: state
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      if (size(model%output%points) == 0) return
-      write (table%row, NUMBERS) state%time, (values(model%output%points(i)), i=1, size(model%output%points))
+      associate (points => run%model%output%points)
+         if (size(points) == 0) return
+         write (table%row, NUMBERS) run%state%time, (values(points(i)), i=1, size(points))
+      end associate
       call write_row(table, fault)
    contains
       pure function values(point)
          type(point_t), intent(in) :: point
          real(wp) :: values(size(COLUMNS))
 
-         values = [unknowns_at(point, state%x), motion_at(point, state%v), motion_at(point, state%a), &
-                   state%stress(1:4, point%gauss), state%e(point%gauss), state%s(point%gauss)]
+         associate (state => run%state)
+            values = [unknowns_at(point, state%x), motion_at(point, state%v), motion_at(point, state%a), &
+                      state%stress(1:4, point%gauss), state%e(point%gauss), state%s(point%gauss)]
+         end associate
       end function values
    end subroutine write_history
 
    !> A row of reactions_STAGE.csv after a step. The file belongs to the stage: it begins with its first row, or goes on
    !> where it was at the checkpoint. Units: see reaction_row. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine write_reactions(self, model, run, fault)
+   subroutine write_reactions(self, run, fault)
       type(table_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: head, path
+      character(:), allocatable :: head
 
-      associate (stage => model%stages(run%at%stage))
-         if (.not. is_open(self%reactions)) then
-            head = reaction_columns(model, stage)
-            if (head == '') return
-            path = reactions_of(self%folder, stage%name)
-            call open_table(path, head, self%reactions%bytes > 0, self%reactions, fault)
-            if (fault%code /= 0) return
-         end if
-         write (self%reactions%row, NUMBERS) reaction_row(model, run)
-         call write_row(self%reactions, fault)
-      end associate
+      if (.not. is_open(self%reactions)) then
+         head = reaction_columns(run)
+         if (head == '') return
+         call open_table(reactions_of(self%folder, run%stage%name), head, self%reactions%bytes > 0, self%reactions, &
+                         fault)
+         if (fault%code /= 0) return
+      end if
+      write (self%reactions%row, NUMBERS) reaction_row(run)
+      call write_row(self%reactions, fault)
    end subroutine write_reactions
 
    !> Path of the table of reactions of a stage.
@@ -200,21 +194,20 @@ contains
 
    !> nodes_STAGE.csv and points_STAGE.csv. Units [m, kPa, m/s], weight [m3], stresses tension positive. Fault
    !> EXIT_OUTPUT: they cannot be written.
-   subroutine write_fields(folder, domain, stage, state, fault)
-      character(*), intent(in) :: folder
-      type(domain_t), intent(in) :: domain
-      character(*), intent(in) :: stage   !< Name of the stage.
-      type(model_state_t), intent(in) :: state
+   subroutine write_fields(folder, run, name, fault)
+      character(*), intent(in) :: folder, name   !< Beginning and end of the paths.
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp) :: x(FIELDS, size(state%x, 2))
+      real(wp) :: x(FIELDS, size(run%state%x, 2))
       integer :: i, e, g
 
-      call all_pressures(domain, state, x)
-      call write_table(folder//'/nodes_'//stage//'.csv', 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', &
-                       reshape([(domain%mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i), i=1, size(x, 2))], &
-                               [8, size(x, 2)]), fault)
-      associate (gauss => domain%gauss, n => domain%rule)
-         call write_table(folder//'/points_'//stage//'.csv', 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', &
+      associate (state => run%state, mesh => run%model%domain%mesh, gauss => run%model%domain%gauss, &
+                 n => run%model%domain%rule)
+         call all_pressures(run%model%domain, state, x)
+         call write_table(folder//'nodes_'//name, 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', &
+                          reshape([(mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i), i=1, size(x, 2))], &
+                                  [8, size(x, 2)]), fault)
+         call write_table(folder//'points_'//name, 'r,z,weight,s_rr,s_zz,s_tt,s_rz,e,S_w', &
                           reshape([((gauss(g, e)%x, gauss(g, e)%weight, state%stress(1:4, (e - 1)*n + g), &
                                      state%e((e - 1)*n + g), state%s((e - 1)*n + g), g=1, n), e=1, size(gauss, 2))], &
                                   [9, size(gauss)]), fault)

@@ -9,13 +9,11 @@ module pressure_alarm
    use generalised_alpha, only: has_rates
    use material_point, only: lost_pressure, PRESSURE_LOST
    use faults, only: fault_t
-   use model_types, only: model_t
-   use porous_domain, only: model_state_t, is_present, COUPLED
+   use porous_domain, only: is_present, COUPLED
    use run_observer, only: observer_t
-   use run_state, only: run_t
+   use run_state, only: run_t, now_in
    use texts, only: short
    use unknown_fields, only: AT_P_W
-   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: pressure_alarm_t, lines_t, find_lines, find_alternation
@@ -41,113 +39,100 @@ module pressure_alarm
    end type pressure_alarm_t
 contains
    !> Warns of each once a run, on standard error, also where the run is quiet.
-   subroutine step(self, model, run, fault)
+   subroutine step(self, run, fault)
       class(pressure_alarm_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      associate (stage => model%stages(run%at%stage))
-         call warn_of_oscillation(model, stage, run%next, self%lines, self%told_oscillation)
-         call warn_lost_pressure(model, run%next, self%told_pressure)
-         call warn_of_inflow(model, stage, run%next%time, run%constraint%drinks, self%told_inflow)
-         call warn_of_dry_ground(model, stage, run%next, self%told_dry)
-      end associate
+      call warn_of_oscillation(run, self%lines, self%told_oscillation)
+      call warn_lost_pressure(run, self%told_pressure)
+      call warn_of_inflow(run, self%told_inflow)
+      call warn_of_dry_ground(run, self%told_dry)
    end subroutine step
 
    !> Warns of pressures that alternate; not in static stages, nor of linear pressures. docs/theory/host.md section 3.1.
-   subroutine warn_of_oscillation(model, stage, state, lines, told)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(model_state_t), intent(in) :: state
+   subroutine warn_of_oscillation(run, lines, told)
+      type(run_t), intent(in) :: run
       type(lines_t), intent(inout) :: lines   !< Lines of the mesh; found when they are asked for first.
       logical, intent(inout) :: told
       real(wp) :: share
-      logical :: counts(size(model%domain%mesh%x, 2))
+      logical :: counts(size(run%model%domain%mesh%x, 2))
       integer :: node, e
 
-      ! Linear pressures are those of the corners alone.
-      if (told .or. .not. has_rates(stage%kind) .or. model%domain%n_p < 6) return
-      associate (mesh => model%domain%mesh)
+      associate (domain => run%model%domain, mesh => run%model%domain%mesh, x => run%next%x)
+         ! Linear pressures are those of the corners alone.
+         if (told .or. .not. has_rates(run%stage%kind) .or. domain%n_p < 6) return
          ! Pressures that are no unknowns of the ground do not count.
          counts = .false.
          do e = 1, size(mesh%t6, 2)
-            if (model%domain%regions(model%domain%region_of(e))%drainage == COUPLED .and. is_present(state, e)) &
+            if (domain%regions(domain%region_of(e))%drainage == COUPLED .and. is_present(run%next, e)) &
                counts(mesh%t6(:, e)) = .true.
          end do
          if (.not. allocated(lines%nodes)) lines = find_lines(mesh%x, mesh%t6)
-         call find_alternation(lines, state%x(AT_P_W, :size(counts)), counts, share, node)
+         call find_alternation(lines, x(AT_P_W, :size(counts)), counts, share, node)
          if (share <= ALARMING_SHARE) return
          told = .true.
-         call print_warning('stage '//trim(stage%name)//', time '//short(state%time)// &
-            ' s: the pore water pressure at ('//short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m, '// &
-            short(state%x(AT_P_W, node))//' kPa, lies to the other side of the mean of its neighbours than they do '// &
-            'of theirs, by '//short(100*share)//' % of the range of all pressures. Pressures that alternate from '// &
-            'node to node are wrong: set pressures = ''linear'' in &scene, which is stable where water cannot drain.')
+         call print_warning(now_in(run)//'the pore water pressure at ('//short(mesh%x(1, node))//', '// &
+            short(mesh%x(2, node))//') m, '//short(x(AT_P_W, node))//' kPa, lies to the other side of the mean of '// &
+            'its neighbours than they do of theirs, by '//short(100*share)//' % of the range of all pressures. '// &
+            'Pressures that alternate from node to node are wrong: set pressures = ''linear'' in &scene, which is '// &
+            'stable where water cannot drain.')
       end associate
    end subroutine warn_of_oscillation
 
    !> Warns of a material that has lost its mean effective stress. docs/theory/memory-rules.md section 2.2.
-   subroutine warn_lost_pressure(model, state, told)
-      type(model_t), intent(in) :: model
-      type(model_state_t), intent(in) :: state
+   subroutine warn_lost_pressure(run, told)
+      type(run_t), intent(in) :: run
       logical, intent(inout) :: told
-      integer :: e, g, p
+      integer :: e, g
 
       if (told) return
-      do e = 1, size(model%domain%region_of)
-         associate (law => model%domain%regions(model%domain%region_of(e))%law, stress => state%stress)
-            if (.not. law%unguarded .or. .not. is_present(state, e)) cycle
-            do g = 1, model%domain%rule
-               p = (e - 1)*model%domain%rule + g
-               if (.not. lost_pressure(law, stress(:, p))) cycle
-               told = .true.
-               call print_warning('time '//short(state%time)// &
-                  ' s: the mean effective stress p'' at ('//short(model%domain%gauss(g, e)%x(1))//', '// &
-                  short(model%domain%gauss(g, e)%x(2))//') m is '//short(-sum(stress(:3, p))/3)//' kPa: '// &
-                  PRESSURE_LOST)
-               return
+      do e = 1, size(run%model%domain%region_of)
+         associate (m => run%model%domain, law => run%model%domain%regions(run%model%domain%region_of(e))%law)
+            if (.not. law%unguarded .or. .not. is_present(run%next, e)) cycle
+            do g = 1, m%rule
+               associate (stress => run%next%stress(:, (e - 1)*m%rule + g), x => m%gauss(g, e)%x)
+                  if (.not. lost_pressure(law, stress)) cycle
+                  told = .true.
+                  call print_warning('time '//short(run%next%time)//' s: the mean effective stress p'' at ('// &
+                     short(x(1))//', '//short(x(2))//') m is '//short(-sum(stress(:3))/3)//' kPa: '//PRESSURE_LOST)
+                  return
+               end associate
             end do
          end associate
       end do
    end subroutine warn_lost_pressure
 
    !> Warns of a node of a seepage face that lets water in. docs/theory/host.md section 7.7.
-   subroutine warn_of_inflow(model, stage, time, drinks, told)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time      !< [s]
-      integer, intent(in) :: drinks     !< Unknown that keeps its limit although water enters there, 0: none.
+   subroutine warn_of_inflow(run, told)
+      type(run_t), intent(in) :: run
       logical, intent(inout) :: told
 
-      if (told .or. drinks == 0) return
+      if (told .or. run%constraint%drinks == 0) return
       told = .true.
-      associate (x => model%domain%mesh%x(:, model%dofs%node(drinks)))
-         call print_warning('stage '//trim(stage%name)//', time '//short(time)// &
-            ' s: the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, or under rain, left its '// &
-            'limit three times within the step, and keeps it although water enters there. Shorten the steps or '// &
-            'refine the mesh there.')
+      associate (x => run%model%domain%mesh%x(:, run%model%dofs%node(run%constraint%drinks)))
+         call print_warning(now_in(run)//'the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, '// &
+            'or under rain, left its limit three times within the step, and keeps it although water enters there. '// &
+            'Shorten the steps or refine the mesh there.')
       end associate
    end subroutine warn_of_inflow
 
    !> Warns of pore water under more tension than any soil holds: more is drawn than the ground has, or lets through,
    !> and water that expands makes up for it. docs/theory/host.md section 9.2.
-   subroutine warn_of_dry_ground(model, stage, state, told)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(model_state_t), intent(in) :: state
+   subroutine warn_of_dry_ground(run, told)
+      type(run_t), intent(in) :: run
       logical, intent(inout) :: told
       integer :: node
 
-      if (told .or. .not. model%domain%with_w) return
-      node = minloc(state%x(AT_P_W, :size(model%domain%mesh%x, 2)), dim=1)
-      if (state%x(AT_P_W, node) > -OVEN_DRY) return
-      told = .true.
-      associate (x => model%domain%mesh%x(:, node))
-         call print_warning('stage '//trim(stage%name)//', time '//short(state%time)//' s: the pore water at ('// &
-            short(x(1))//', '//short(x(2))//') m is under a tension of '//short(-state%x(AT_P_W, node))//' kPa. '// &
-            'Soil is oven-dry at '//short(OVEN_DRY)//' kPa: more is drawn than the ground holds or lets through, '// &
-            'and the rest comes out of water that expands. Let a &fix of p_w, or a &history, limit what is drawn.')
+      if (told .or. .not. run%model%domain%with_w) return
+      associate (x => run%model%domain%mesh%x, p_w => run%next%x(AT_P_W, :))
+         node = minloc(p_w(:size(x, 2)), dim=1)
+         if (p_w(node) > -OVEN_DRY) return
+         told = .true.
+         call print_warning(now_in(run)//'the pore water at ('//short(x(1, node))//', '//short(x(2, node))// &
+            ') m is under a tension of '//short(-p_w(node))//' kPa. Soil is oven-dry at '//short(OVEN_DRY)//' kPa: '// &
+            'more is drawn than the ground holds or lets through, and the rest comes out of water that expands. '// &
+            'Let a &fix of p_w, or a &history, limit what is drawn.')
       end associate
    end subroutine warn_of_dry_ground
 

@@ -8,84 +8,66 @@ module progress_line
    use run_state, only: run_t
    use wall_clock, only: clock
    use kinds, only: wp
-   use model_types, only: model_t
    use files, only: to_terminal, terminal_width
    use texts, only: short, whole
-   use scene_parts, only: stage_t
    implicit none (type, external)
    private
-   public :: progress_observer_t, steps_left, span_of
+   public :: progress_observer_t, span_of
 
-   real(wp), parameter :: PERIOD = 0.5_wp                  !< Between two lines [s].
-   real(wp), parameter :: MEMORY = 0.9_wp                  !< Share of the past in the mean time of a step.
+   real(wp), parameter :: PERIOD = 0.5_wp   !< Between two lines [s].
 
    type, extends(observer_t) :: progress_observer_t
       integer :: standing = 0               !< Columns of the line that stands on the terminal.
       real(wp) :: last_line = -huge(1.0_wp) !< When it was written.
-      real(wp) :: last_step = -1.0_wp
-      real(wp) :: pace = 0.0_wp             !< Seconds a step, the last ones counting most.
+      integer :: stage = 0                  !< Stage that the next two belong to.
+      real(wp) :: begun = 0.0_wp            !< When its first step ended that was seen, on the wall clock [s].
+      real(wp) :: from = 0.0_wp             !< Time of the run at the end of that step [s].
    contains
       procedure :: taken_over
       procedure :: repeated
       procedure :: stage_ends
    end type progress_observer_t
 contains
-   !> Shows the step, the share of the stage and the time that is left.
-   subroutine taken_over(self, model, run, fault)
+   !> Shows the step, the share of the stage and the time that the stage takes yet if it goes on as so far.
+   subroutine taken_over(self, run, fault)
       class(progress_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: line
-      real(wp) :: now, left
-      logical :: known
-      integer :: i
+      real(wp) :: now
 
       if (.not. to_terminal()) return
       now = clock()
-      if (self%last_step >= 0.0_wp) then
-         if (self%pace > 0.0_wp) then
-            self%pace = MEMORY*self%pace + (1 - MEMORY)*(now - self%last_step)
-         else
-            self%pace = now - self%last_step
-         end if
+      if (self%stage /= run%at%stage) then
+         ! The first step has no pace yet.
+         self%stage = run%at%stage
+         self%begun = now
+         self%from = run%state%time
+      else if (now - self%last_line >= PERIOD) then
+         self%last_line = now
+         associate (at => run%at, time => run%state%time, duration => run%stage%duration)
+            call write_line('Stage '//trim(run%stage%name)//': step '//whole(at%step)//', time '//short(time)// &
+               ' s, '//whole(nint(100*(time - at%t_start)/duration))//' %; about '//span_of((now - self%begun) &
+               *(at%t_start + duration - time)/(time - self%from))//' left for this stage', self)
+         end associate
       end if
-      self%last_step = now
-      ! The first step has no pace yet.
-      if (.not. self%pace > 0.0_wp .or. now - self%last_line < PERIOD) return
-      self%last_line = now
-      associate (stage => model%stages(run%at%stage), at => run%at)
-         left = steps_left(stage, at%nominal*at%factor, at%t_start + stage%duration - run%state%time)
-         ! Stages to come that choose their steps have not chosen them yet.
-         known = .not. any(model%stages(at%stage + 1:)%controlled)
-         do i = at%stage + 1, merge(size(model%stages), at%stage, known)
-            left = left + steps_left(model%stages(i), model%stages(i)%dt, model%stages(i)%duration)
-         end do
-         line = 'Stage '//trim(stage%name)//': step '//whole(at%step)//', time '//short(run%state%time)//' s, '// &
-                whole(nint(100*(run%state%time - at%t_start)/stage%duration))//' %; about '// &
-                span_of(left*self%pace)//' left for '//trim(merge('all stages', 'this stage', known))
-      end associate
-      call write_line(line, self)
    end subroutine taken_over
 
    !> Shows an attempt that is not accepted, as often as that.
-   subroutine repeated(self, model, run, fault)
+   subroutine repeated(self, run, fault)
       class(progress_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (.not. to_terminal()) return
       if (clock() - self%last_line < PERIOD) return
       self%last_line = clock()
-      call write_line('Stage '//trim(model%stages(run%at%stage)%name)//', time '//short(run%state%time)// &
+      call write_line('Stage '//trim(run%stage%name)//', time '//short(run%state%time)// &
                       ' s: a step of '//short(run%scheme%dt)//' s is repeated, cuts '//whole(run%cuts), self)
    end subroutine repeated
 
    !> Empties the line on the terminal, so that another can be written.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(progress_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -105,33 +87,6 @@ contains
       progress%standing = columns
       flush (output_unit)
    end subroutine write_line
-
-   !> Steps that the rest of a stage takes if none is cut: a geometric series up to the largest step.
-   pure real(wp) function steps_left(stage, dt, time) result(steps)
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: dt, time   !< The next step; what is left [s].
-      real(wp) :: largest, growing, covered
-
-      if (time <= 0.0_wp) then
-         steps = 0.0_wp
-         return
-      end if
-      ! The second: as far as it could grow in the time that is left.
-      largest = min(max(stage%dt_max, stage%dt), dt + stage%dt_growth*time)
-      if (.not. stage%dt_growth > 1.0_wp .or. dt >= largest) then
-         steps = time/dt
-         return
-      end if
-      associate (g => stage%dt_growth)
-         growing = log(largest/dt)/log(g)
-         covered = dt*(largest/dt - 1)/(g - 1)
-         if (covered < time) then
-            steps = growing + (time - covered)/largest
-         else
-            steps = log(1 + time*(g - 1)/dt)/log(g)
-         end if
-      end associate
-   end function steps_left
 
    !> A duration in hours, minutes or seconds, as text.
    pure function span_of(seconds) result(text)

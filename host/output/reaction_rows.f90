@@ -21,14 +21,13 @@ module reaction_rows
    integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8, LIMIT = 9
 contains
    !> Columns of a stage's table; empty where the stage prescribes and loads nothing. docs/theory/host.md section 9.1.
-   function reaction_columns(model, stage) result(head)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   function reaction_columns(run) result(head)
+      type(run_t), intent(in) :: run
       character(:), allocatable :: head
       integer, allocatable :: list(:, :)
       integer :: i
 
-      call list_columns(model, stage, list)
+      call list_columns(run%model, run%stage, list)
       head = ''
       if (size(list, 2) > 0) head = 'time,time_of_forces'
       do i = 1, size(list, 2)
@@ -41,15 +40,14 @@ contains
          character(:), allocatable :: name
          integer :: i, k
 
-         name = trim(model%domain%mesh%groups(group)%name)//'.'//trim(SUFFIX(kind))
-         do i = 1, size(model%plates)
-            do k = 1, size(model%plates(i)%coordinates)
-               associate (one => model%plates(i)%coordinates(k))
-                  if (one%group /= group) cycle
-                  name = trim(model%plates(i)%name)//'.'//trim(one%names(4))
-                  if (kind == LOAD_Z) name = trim(model%plates(i)%name)//'.load_'//trim(one%names(1))
-               end associate
-            end do
+         name = trim(run%model%domain%mesh%groups(group)%name)//'.'//trim(SUFFIX(kind))
+         do i = 1, size(run%model%plates)
+            associate (plate => run%model%plates(i))
+               k = findloc(plate%coordinates%group, group, dim=1)
+               if (k == 0) cycle
+               name = trim(plate%name)//'.'//trim(plate%coordinates(k)%names(4))
+               if (kind == LOAD_Z) name = trim(plate%name)//'.load_'//trim(plate%coordinates(k)%names(1))
+            end associate
          end do
       end function name_of
    end function reaction_columns
@@ -108,55 +106,48 @@ contains
 
    !> Row after a step. Forces hold where the step is in balance: at the level of its values. Times [s], forces [kN],
    !> flows [m3/s], in the order of reaction_columns: docs/theory/host.md section 9.1.
-   function reaction_row(model, run) result(row)
-      type(model_t), intent(in) :: model
+   function reaction_row(run) result(row)
       type(run_t), intent(in) :: run   !< After a step that was taken over.
       real(wp), allocatable :: row(:)
       integer, allocatable :: list(:, :)
       real(wp), allocatable :: sums(:, :)
       integer :: i, k
 
-      call list_columns(model, model%stages(run%at%stage), list)
-      allocate (sums(SUFFIXES, size(model%domain%mesh%groups)), source=0.0_wp)
+      call list_columns(run%model, run%stage, list)
+      allocate (sums(SUFFIXES, size(run%model%domain%mesh%groups)), source=0.0_wp)
       call add_reactions()
       call add_loads()
-      do i = 1, size(model%plates)
-         do k = 1, size(model%plates(i)%coordinates)
-            associate (one => model%plates(i)%coordinates(k))
+      do i = 1, size(run%model%plates)
+         do k = 1, size(run%model%plates(i)%coordinates)
+            associate (one => run%model%plates(i)%coordinates(k))
                if (one%group > 0) sums(:, one%group) = one%unit*sums(:, one%group)
             end associate
          end do
       end do
-      row = [run%state%time, run%state%time - (1 - run%scheme%l_f)*run%scheme%dt, picked()]
+      row = [run%state%time, run%state%time - (1 - run%scheme%l_f)*run%scheme%dt, &
+             (sums(list(2, i), list(1, i)), i=1, size(list, 2))]
    contains
-      function picked() result(values)
-         real(wp) :: values(size(list, 2))
-         integer :: i
-
-         values = [(sums(list(2, i), list(1, i)), i=1, size(list, 2))]
-      end function picked
-
       subroutine add_reactions()
-         integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i, k, group
+         integer :: by(run%model%dofs%n), air_by(size(run%model%domain%mesh%x, 2)), i, k, group
          real(wp) :: w, a
 
-         call prescribing_fixes(model, model%stages(run%at%stage), run%constraint, run%state%time, by, air_by)
-         sums(:DISPLACEMENTS, :) = forces_of_supports(model, by, run%system%reaction)
-         associate (dofs => model%dofs, constraint => run%constraint, reaction => run%system%reaction)
-            if (.not. run%scheme%has_rates .or. .not. model%domain%with_w) return
+         call prescribing_fixes(run%model, run%stage, run%constraint, run%state%time, by, air_by)
+         sums(:DISPLACEMENTS, :) = forces_of_supports(run%model, by, run%system%reaction)
+         associate (dofs => run%model%dofs, constraint => run%constraint, reaction => run%system%reaction)
+            if (.not. run%scheme%has_rates .or. .not. run%model%domain%with_w) return
             do i = 1, size(air_by)
                if (dofs%of(AT_P_W, i) == 0) cycle
                w = reaction(dofs%of(AT_P_W, i))
                a = 0.0_wp
                k = max(by(dofs%of(AT_P_W, i)), air_by(i))
-               if (model%domain%with_c) then
+               if (run%model%domain%with_c) then
                   a = reaction(dofs%of(AT_P_C, i))
                   k = max(k, by(dofs%of(AT_P_C, i)))
                   ! The first balance is that of both fluids; where the air pressure is given, that of the water.
                   if (.not. constraint%air(i)) w = w - a
                end if
                group = 0
-               if (k > 0) group = model%fixes(k)%group
+               if (k > 0) group = run%model%fixes(k)%group
                associate (at => dofs%of(AT_P_W, i))
                   if (constraint%limited(at)) then
                      group = constraint%limited_by(at)
@@ -171,15 +162,15 @@ contains
       end subroutine add_reactions
 
       subroutine add_loads()
-         real(wp) :: factor, vector(model%dofs%n)
+         real(wp) :: factor, vector(run%model%dofs%n)
          integer :: i
 
-         do i = 1, size(model%loads)
-            associate (load => model%loads(i), field => model%dofs%field)
-               if (.not. acts_in(load%stages, model%stages(run%at%stage)%name)) cycle
+         do i = 1, size(run%model%loads)
+            associate (load => run%model%loads(i), field => run%model%dofs%field)
+               if (.not. acts_in(load%stages, run%stage%name)) cycle
                vector = force_of(load, 1.0_wp)
-               factor = factor_at(model, load%amplitude, run%state%time - run%scheme%dt)
-               factor = factor + run%scheme%l_f*(factor_at(model, load%amplitude, run%state%time) - factor)
+               factor = factor_at(run%model, load%amplitude, run%state%time - run%scheme%dt)
+               factor = factor + run%scheme%l_f*(factor_at(run%model, load%amplitude, run%state%time) - factor)
                associate (sum_of => sums(:, load%group))
                   select case (load%kind)
                   case (LOAD_WATER, LOAD_RAIN)

@@ -4,7 +4,6 @@ module run_cost
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
-   use model_types, only: model_t
    use run_state, only: run_t
    use texts, only: short, whole
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
@@ -16,14 +15,13 @@ module run_cost
 contains
    !> One sentence; factors as large as the last ones made, 0 before a run. Memory in MB of
    !> 1e6 bytes.
-   function size_of_run(model, run) result(text)
-      type(model_t), intent(in) :: model
+   function size_of_run(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
       integer :: f
 
-      associate (field => model%dofs%field)
-         text = whole(model%dofs%n)//' unknowns ('//whole(count(field <= DISPLACEMENTS))//' displacements'
+      associate (field => run%model%dofs%field)
+         text = whole(run%model%dofs%n)//' unknowns ('//whole(count(field <= DISPLACEMENTS))//' displacements'
          do f = AT_P_W, AT_P_C
             if (any(field == f)) text = text//', '//whole(count(field == f))//trim(merge(' p_w', ' p_c', f == AT_P_W))
          end do
@@ -51,9 +49,8 @@ contains
    end function megabytes
 
    !> Prints counters, memory and the time of every part of a run.
-   subroutine print_cost(unit, model, run, total)
+   subroutine print_cost(unit, run, total)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
-      type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: total   !< Wall time since the program began [s].
       character(14), parameter :: PHASES(8) = [character(14) :: 'material', 'assembly', 'contact', 'factorisation', &
@@ -69,7 +66,7 @@ contains
          whole(run%system%n_pass)//' passes over the elements, '//whole(run%system%sparse%n_numeric)// &
          ' factorisations ('//whole(nint(run%system%sparse%entries, int64))//' entries), '// &
          whole(run%system%sparse%n_solve)//' solutions by factors.'
-      write (unit, '(a)') size_of_run(model, run)
+      write (unit, '(a)') size_of_run(run)
       do k = 1, size(PHASES)
          write (unit, '(3x,a,f12.3,a,f6.1,a)') PHASES(k), seconds(k), ' s', 100*seconds(k)/total, ' %'
       end do

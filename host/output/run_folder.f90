@@ -8,7 +8,6 @@ module run_folder
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use field_files, only: check_mesh
    use files, only: make_folder
-   use model_types, only: model_t
    use run_observer, only: observer_t
    use run_state, only: run_t
    use scene_parts, only: FINGERPRINT_LENGTH
@@ -57,9 +56,8 @@ contains
    end subroutine exchange
 
    !> Refuses a folder that does not hold the run. Fault EXIT_RESTART: its mesh is of another scene.
-   subroutine fits(self, model, run, fault)
+   subroutine fits(self, run, fault)
       class(folder_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
@@ -67,20 +65,18 @@ contains
    end subroutine fits
 
    !> Takes the folder, which a new run makes. Fault EXIT_OUTPUT: another run writes to it.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(folder_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (run%steps == 0) self%origin = model%origin%fingerprint
+      if (run%steps == 0) self%origin = run%model%origin%fingerprint
       call lock_folder(self%folder, run%steps == 0, fault)
    end subroutine begins
 
    !> Gives the folder free.
-   subroutine ends(self, model, run, fault)
+   subroutine ends(self, run, fault)
       class(folder_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 

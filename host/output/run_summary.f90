@@ -54,29 +54,27 @@ contains
    end subroutine exchange
 
    !> Peaks before the first step are zero.
-   subroutine begins(self, model, run, fault)
+   subroutine begins(self, run, fault)
       class(summary_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (run%steps > 0) return
-      associate (peaks => self%peaks, points => size(model%output%points))
+      associate (peaks => self%peaks, points => size(run%model%output%points))
          allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
       end associate
    end subroutine begins
 
    !> Notes the largest values.
-   subroutine taken_over(self, model, run, fault)
+   subroutine taken_over(self, run, fault)
       class(summary_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS)
       integer :: i, f
 
-      do i = 1, size(model%output%points)
-         x = unknowns_at(model%output%points(i), run%state%x)
+      do i = 1, size(run%model%output%points)
+         x = unknowns_at(run%model%output%points(i), run%state%x)
          do f = 1, FIELDS
             if (.not. abs(x(f)) > abs(self%peaks%value(f, i))) cycle
             self%peaks%value(f, i) = x(f)
@@ -87,34 +85,31 @@ contains
    end subroutine taken_over
 
    !> Says how a stage went that has come to its end.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(summary_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (run%news%complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '// &
-         trim(model%stages(run%at%stage)%name)//': '//counted(run%at%step, 'step')//', time '// &
+         trim(run%stage%name)//': '//counted(run%at%step, 'step')//', time '// &
          short(run%state%time)//' s, '//counted(run%iterations, 'linear solve')//' and '// &
          counted(run%cuts, 'cut')//' so far.'
    end subroutine stage_ends
 
    !> Says what came of the run, and what it has cost.
-   subroutine ends(self, model, run, fault)
+   subroutine ends(self, run, fault)
       class(summary_observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (run%steps == 0) return
-      if (.not. self%quiet) call print_summary(output_unit, model, run, self%peaks)
-      if (self%verbose) call print_cost(output_unit, model, run, clock() - self%started)
+      if (.not. self%quiet) call print_summary(output_unit, run, self%peaks)
+      if (self%verbose) call print_cost(output_unit, run, clock() - self%started)
    end subroutine ends
 
    !> The summary; nothing of answers that no step has changed, of steps where all are given.
-   subroutine print_summary(unit, model, run, peaks)
+   subroutine print_summary(unit, run, peaks)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
-      type(model_t), intent(in) :: model
       type(run_t), intent(in) :: run
       type(peaks_t), intent(in) :: peaks
       character(:), allocatable :: text
@@ -123,11 +118,11 @@ contains
 
       most = [maxval([0.0_wp, abs(peaks%value(:DISPLACEMENTS, :))]), &
               maxval([0.0_wp, abs(peaks%value(DISPLACEMENTS + 1:, :))])]
-      do i = 1, size(model%output%points)
-         associate (point => model%output%points(i))
+      do i = 1, size(run%model%output%points)
+         associate (point => run%model%output%points(i))
             do f = 1, FIELDS
                if (.not. abs(peaks%value(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
-               if (all(model%dofs%of(f, point%nodes) == 0) .and. .not. keeps_fluids(model, point, f)) cycle
+               if (all(run%model%dofs%of(f, point%nodes) == 0) .and. .not. keeps_fluids(run%model, point, f)) cycle
                write (unit, '(a)') trim(point%name)//'.'//trim(FIELD_NAMES(f))//' '// &
                   with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
                   with_unit(peaks%time(f, i), 's', peaks%dt(f, i))
@@ -136,7 +131,7 @@ contains
       end do
       text = counted(run%steps, 'step')
       associate (c => run%control)
-         if (any(model%stages%controlled)) then
+         if (any(run%model%stages%controlled)) then
             text = text//', '//counted(c%rejected, 'repetition')//' because of an error; kept short by'
             do i = 1, LIMITS
                if (c%limits(i) > 0.0_wp) text = text//' '//trim(LIMIT_NAMES(i))//' ('//whole(nint(c%limits(i)))//'),'
@@ -146,8 +141,8 @@ contains
       end associate
       write (unit, '(a)') text//'.'
       call repeat_warnings(unit)
-      write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '//trim(model%origin%file)// &
-         '" measures them.'
+      write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '// &
+         trim(run%model%origin%file)//'" measures them.'
    end subroutine print_summary
 
    !> Whether a field is a pressure of an undrained region: it follows from the strains of its element.

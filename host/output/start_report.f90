@@ -7,10 +7,9 @@ module start_report
    use faults, only: fault_t
    use generalised_alpha, only: has_rates, has_inertia
    use start_findings, only: balance_t
-   use model_types, only: model_t
    use run_cost, only: size_of_run
    use run_observer, only: observers_t, FITS
-   use run_state, only: run_t, act_contacts
+   use run_state, only: run_t, enter_stage
    use scene_types, only: scene_t
    use scene_warnings, only: warn_of_scene
    use start_balance, only: find_imbalance
@@ -21,40 +20,39 @@ module start_report
 contains
    !> Says what is going to run, and warns of the scene, which a quiet run does as well. `only_check`: nothing runs, and
    !> the overlaps that a run tells where its first stage begins are told here.
-   subroutine report_start(scene, model, run, quiet, verbose, only_check)
+   subroutine report_start(scene, run, quiet, verbose, only_check)
       type(scene_t), intent(in) :: scene
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run   !< The contacts are probed.
       logical, intent(in) :: quiet, verbose, only_check
       type(balance_t) :: balance
       type(contact_alarm_t) :: contacts
       type(fault_t) :: none
 
-      if (.not. quiet) call announce(model, run, verbose)
-      call find_imbalance(model, run, balance)
+      if (.not. quiet) call announce(run, verbose)
+      call find_imbalance(run, balance)
       if (.not. quiet .and. balance%known) write (output_unit, '(a)') 'Start: at most '//short(balance%stress)// &
          ' kPa without balance, at ('//short(balance%x(1))//', '//short(balance%x(2))//') m; the stress there is '// &
          short(balance%there)//' kPa.'
-      call warn_of_scene(scene, model, run%tension, balance)
+      call warn_of_scene(scene, run%model, run%tension, balance)
       if (.not. only_check) return
-      call act_contacts(model, model%stages(1), run%system%contacts)
-      run%at%stage = 1
-      call contacts%stage_begins(model, run, none)
+      call enter_stage(run, 1)
+      call contacts%stage_begins(run, none)
    end subroutine report_start
 
    !> Says what is going to run.
-   subroutine announce(model, run, verbose)
-      type(model_t), intent(in) :: model
+   subroutine announce(run, verbose)
       type(run_t), intent(in) :: run
       logical, intent(in) :: verbose   !< With its memory.
       integer :: i
 
-      write (output_unit, '(a)') trim(model%origin%name)//': '//whole(size(model%domain%mesh%t6, 2))//' elements, '// &
-         whole(size(model%domain%mesh%x, 2))//' nodes, '//whole(model%dofs%n)//' unknowns, '// &
-         whole(size(run%pattern%col))//' entries, '//whole(model%domain%threads)//' threads.'
-      if (verbose) write (output_unit, '(a)') size_of_run(model, run)
-      do i = 1, size(model%stages)
-         associate (stage => model%stages(i))
+      associate (mesh => run%model%domain%mesh)
+         write (output_unit, '(a)') trim(run%model%origin%name)//': '//whole(size(mesh%t6, 2))//' elements, '// &
+            whole(size(mesh%x, 2))//' nodes, '//whole(run%model%dofs%n)//' unknowns, '// &
+            whole(size(run%pattern%col))//' entries, '//whole(run%model%domain%threads)//' threads.'
+      end associate
+      if (verbose) write (output_unit, '(a)') size_of_run(run)
+      do i = 1, size(run%model%stages)
+         associate (stage => run%model%stages(i))
             if (has_rates(stage%kind)) write (output_unit, '(a)') 'Stage '//trim(stage%name)//': '// &
                trim(merge('dynamic     ', 'quasi_static', has_inertia(stage%kind)))//', rho_inf '// &
                short(stage%rho_inf)//'.'
@@ -66,8 +64,7 @@ contains
 
    !> Says where a run would go on that a checkpoint has put in place. Faults: those of observers whose files do not
    !> fit.
-   subroutine report_restart(model, run, observers, restart, folder, quiet, fault)
-      type(model_t), intent(in) :: model
+   subroutine report_restart(run, observers, restart, folder, quiet, fault)
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       character(*), intent(in) :: restart, folder   !< Path of the checkpoint, empty: none; folder of the results.
@@ -75,9 +72,9 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (restart == '') return
-      call observers%tell(FITS, model, run, fault)
+      call observers%tell(FITS, run, fault)
       if (fault%code /= 0 .or. quiet) return
-      write (output_unit, '(a)') restart//' fits: stage '//trim(model%stages(run%at%stage)%name)// &
+      write (output_unit, '(a)') restart//' fits: stage '//trim(run%stage%name)// &
          ', step '//whole(run%at%step)//', time '//short(run%state%time)// &
          ' s; the run would go on in '//folder//'.'
    end subroutine report_restart

@@ -8,7 +8,6 @@ module water_balance
    use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
    use kinds, only: wp
-   use model_types, only: model_t
    use porous_domain, only: domain_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use run_observer, only: observer_t
    use run_state, only: run_t
@@ -57,35 +56,33 @@ contains
    end subroutine exchange
 
    !> Books the water of a step.
-   subroutine step(self, model, run, fault)
+   subroutine step(self, run, fault)
       class(water_alarm_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       integer :: e
 
-      if (.not. run%scheme%has_rates .or. .not. model%domain%with_w) return
-      call book_boundaries(model%dofs, run, self%water)
-      do e = 1, size(model%domain%region_of)
-         if (is_present(run%state, e) .and. any(model%domain%regions(model%domain%region_of(e))%drainage == &
+      if (.not. run%scheme%has_rates .or. .not. run%model%domain%with_w) return
+      call book_boundaries(run%model%dofs, run, self%water)
+      do e = 1, size(run%model%domain%region_of)
+         if (is_present(run%state, e) .and. any(run%model%domain%regions(run%model%domain%region_of(e))%drainage == &
                                                 [COUPLED, UNDRAINED])) &
-            call book_storage(model%domain, e, run, self%water)
+            call book_storage(run%model%domain, e, run, self%water)
       end do
    end subroutine step
 
    !> Warns at the end of a stage of the water that is missing or made; not where the scene leaves a part of the rate of
    !> saturation out.
-   subroutine stage_ends(self, model, run, fault)
+   subroutine stage_ends(self, run, fault)
       class(water_alarm_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: of_what
       real(wp) :: missing
 
-      associate (water => self%water, stage => model%stages(run%at%stage))
+      associate (water => self%water, stage => run%stage)
          missing = water%received - water%left - water%gained
-         if (model%domain%full_rate .and. &
+         if (run%model%domain%full_rate .and. &
              abs(missing) > max(ALARMING_SHARE*water%moved, INSIDE_SHARE*water%turned)) then
             of_what = short(100*abs(missing)/water%turned)//' % of what has moved in its pores'
             if (water%moved > 0.0_wp) of_what = short(100*abs(missing)/water%moved)//' % of what has come and gone'

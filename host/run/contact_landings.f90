@@ -4,7 +4,6 @@
 module contact_landings
    use kinds, only: wp
    use run_state, only: run_t
-   use scene_parts, only: stage_t
    use step_landings, only: LAST_STEP, SHORTEST
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
@@ -28,12 +27,11 @@ contains
 
    !> Whether a step in which a contact closes ends there, or has been repeated so that it should. If not, the next
    !> attempt does.
-   logical function ends_at_closing(stage, run) result(ends)
-      type(stage_t), intent(in) :: stage
+   logical function ends_at_closing(run) result(ends)
       type(run_t), intent(inout) :: run
 
       associate (c => run%control, dt => run%scheme%dt)
-         ends = c%located .or. dt <= SHORTEST*stage%duration
+         ends = c%located .or. dt <= SHORTEST*run%stage%duration
          if (ends) return
          call end_where_it_closes(run)
          ends = c%controller%dt >= dt*(1 - LAST_STEP)

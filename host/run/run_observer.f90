@@ -6,7 +6,6 @@ module run_observer
    use archive, only: archive_t
    use faults, only: fault_t
    use kinds, only: wp
-   use model_types, only: model_t
    use run_state, only: run_t
    use wall_clock, only: clock, add_elapsed
    implicit none (type, external)
@@ -62,9 +61,8 @@ contains
    end subroutine exchange
 
    !> Does nothing at an event. Faults of an observer's own procedure are those of the observer.
-   subroutine unheard(self, model, run, fault)
+   subroutine unheard(self, run, fault)
       class(observer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
    end subroutine unheard
@@ -88,10 +86,9 @@ contains
    end subroutine add
 
    !> Tells the observers an event. The first fault counts, and one that there is already stays.
-   subroutine tell(self, event, model, run, fault)
+   subroutine tell(self, event, run, fault)
       class(observers_t), intent(inout), target :: self
       integer, intent(in) :: event
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       type(fault_t) :: one
@@ -105,37 +102,36 @@ contains
          k = merge(self%begun + 1 - i, i, event == ENDS)
          one = fault_t()
          self%list(k)%observer%earlier => self%list(:k - 1)
-         call hear(self%list(k)%observer, event, model, run, one)
+         call hear(self%list(k)%observer, event, run, one)
          if (fault%code == 0) fault = one
          if (event == BEGINS .and. fault%code == 0) self%begun = k
       end do
       if (any(event == TIMED)) call add_elapsed(run%seconds_output, t0)
    end subroutine tell
 
-   subroutine hear(observer, event, model, run, fault)
+   subroutine hear(observer, event, run, fault)
       class(observer_t), intent(inout) :: observer
       integer, intent(in) :: event
-      type(model_t), intent(in) :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       select case (event)
       case (FITS)
-         call observer%fits(model, run, fault)
+         call observer%fits(run, fault)
       case (BEGINS)
-         call observer%begins(model, run, fault)
+         call observer%begins(run, fault)
       case (STAGE_BEGINS)
-         call observer%stage_begins(model, run, fault)
+         call observer%stage_begins(run, fault)
       case (STEP)
-         call observer%step(model, run, fault)
+         call observer%step(run, fault)
       case (TAKEN_OVER)
-         call observer%taken_over(model, run, fault)
+         call observer%taken_over(run, fault)
       case (REPEATED)
-         call observer%repeated(model, run, fault)
+         call observer%repeated(run, fault)
       case (STAGE_ENDS)
-         call observer%stage_ends(model, run, fault)
+         call observer%stage_ends(run, fault)
       case (ENDS)
-         call observer%ends(model, run, fault)
+         call observer%ends(run, fault)
       end select
    end subroutine hear
 end module run_observer

@@ -21,11 +21,12 @@ contains
    !> A run at its start; a fault where the initial state is refused. Faults: those of initial_state, prepare_contacts,
    !> keep_flow and the terms.
    subroutine prepare_run(model, run, fault)
-      type(model_t), intent(in) :: model
+      type(model_t), intent(inout), target :: model   !< It stays as long as the run, which sets tolerances of its laws.
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
       integer :: i
 
+      run%model => model
       run%system%reuse = model%solver%reuse_factors
       run%system%sparse%ordering = model%solver%ordering
       call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
@@ -39,24 +40,23 @@ contains
          if (fault%code == 0) call run%terms(i)%term%begin_run(model, run%solution_t, fault)
       end do
       run%next = run%state
-      if (fault%code == 0 .and. model%subtract_flow) call keep_flow(model, run, fault)
+      if (fault%code == 0 .and. model%subtract_flow) call keep_flow(run, fault)
    end subroutine prepare_run
 
    !> The flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault EXIT_MATERIAL:
    !> a material refuses the initial state.
-   subroutine keep_flow(model, run, fault)
-      type(model_t), intent(in) :: model
+   subroutine keep_flow(run, fault)
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      call assemble(model%domain, model%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, run%next, &
-                    .false., run%assembly)
+      call assemble(run%model%domain, run%model%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, &
+                    run%next, .false., run%assembly)
       if (run%assembly%bad_element > 0) then
          call raise(fault, EXIT_MATERIAL, 'The initial state is refused by the material of element '// &
                     whole(run%assembly%bad_element)//'.')
          return
       end if
-      where (model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
+      where (run%model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
       run%next = run%state
    end subroutine keep_flow
 end module run_setup

@@ -11,10 +11,10 @@ module run_state
    use scene_parts, only: stage_t, acts_in
    use solution, only: solution_t, stage_state_t
    use sparsity_pattern, only: make_pattern
-   use surface_forces, only: surface_forces_t
+   use texts, only: short
    implicit none (type, external)
    private
-   public :: run_t, news_t, exchange_run, act_contacts
+   public :: run_t, news_t, exchange_run, enter_stage, now_in
 
    !> News for observers, beside what the run computes with.
    type :: news_t
@@ -25,6 +25,8 @@ module run_state
    end type news_t
 
    type, extends(solution_t) :: run_t
+      type(model_t), pointer :: model => null()   !< Model that is run.
+      type(stage_t), pointer :: stage => null()   !< Stage under way, one of the model's.
       type(term_box_t), allocatable :: terms(:)   !< Terms of the model, with what they keep from step to step.
       type(tension_t) :: tension               !< Tension in the initial state, for a warning.
       type(control_state_t) :: control         !< Control of the time step, in stages that choose it.
@@ -35,45 +37,54 @@ module run_state
       type(news_t) :: news
    end type run_t
 contains
-   !> Sets which contacts act in a stage.
-   subroutine act_contacts(model, stage, contacts)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      class(surface_forces_t), allocatable, intent(inout) :: contacts
+   !> Takes a run to a stage, and sets which contacts act in it.
+   subroutine enter_stage(run, number)
+      type(run_t), intent(inout) :: run
+      integer, intent(in) :: number
       integer :: i
 
-      if (allocated(contacts)) call contacts%act([(acts_in(model%contacts(i)%stages, stage%name), &
-                                                   i=1, size(model%contacts))])
-   end subroutine act_contacts
+      run%at%stage = number
+      run%stage => run%model%stages(number)
+      if (allocated(run%system%contacts)) call run%system%contacts%act( &
+         [(acts_in(run%model%contacts(i)%stages, run%stage%name), i=1, size(run%model%contacts))])
+   end subroutine enter_stage
+
+   !> Where a run is at the end of the step under way, for a warning.
+   function now_in(run) result(text)
+      type(run_t), intent(in) :: run
+      character(:), allocatable :: text
+
+      text = 'stage '//trim(run%stage%name)//', time '//short(run%next%time)//' s: '
+   end function now_in
 
    !> Exchanges a prepared run with an archive, between two steps. What is restored goes on to the last digit: loads,
    !> supports and the flow that is subtracted follow from the scene, and the ordering of the equations from their
    !> pattern.
-   subroutine exchange_run(model, run, archive)
-      type(model_t), intent(in) :: model
+   subroutine exchange_run(run, archive)
       type(run_t), intent(inout) :: run
       class(archive_t), intent(inout) :: archive
       integer :: i
 
-      call exchange_stage_state(size(model%stages), run%at, archive)
+      call exchange_stage_state(size(run%model%stages), run%at, archive)
       call archive%exchange('steps', run%steps, '-', 'steps', least=1)
       call archive%exchange('iterations', run%iterations, '-', 'linear solves', least=0)
       call archive%exchange('cuts', run%cuts, '-', 'cuts', least=0)
       call archive%exchange('rate_evaluations', run%rate_evaluations, '-', 'rate evaluations of the material')
-      call exchange_state(model%domain, run%state, archive)
+      call exchange_state(run%model%domain, run%state, archive)
       call archive%exchange('largest', run%system%largest, 'kN', 'largest scale of every field')
       do i = 1, size(run%terms)
          call run%terms(i)%term%exchange(run%solution_t, archive)
       end do
       if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
-                                                           size(model%contacts))
+                                                           size(run%model%contacts))
       call exchange_control(run%control, archive)
-      if (allocated(run%system%contacts)) call exchange_pairs(model%dofs%n, run%system%extra, archive)
+      if (allocated(run%system%contacts)) call exchange_pairs(run%model%dofs%n, run%system%extra, archive)
       if (.not. archive%reading .or. .not. archive%good) return
-      run%state%gravity = gravity_at(model, run%state%time)
+      run%stage => run%model%stages(run%at%stage)
+      run%state%gravity = gravity_at(run%model, run%state%time)
       call copy_state(run%state, run%next)
       if (.not. allocated(run%system%extra)) return
-      call make_pattern(model%dofs%n, model%dofs%element, run%system%extra, run%pattern)
+      call make_pattern(run%model%dofs%n, run%model%dofs%element, run%system%extra, run%pattern)
       deallocate (run%assembly%values)
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine exchange_run

@@ -9,7 +9,7 @@ module start_balance
    use model_types, only: model_t, factor_at, load_t, unknowns_of
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
-   use run_state, only: run_t, act_contacts
+   use run_state, only: run_t, enter_stage
    use scene_parts, only: acts_in, LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_P_W
    implicit none (type, external)
@@ -22,32 +22,32 @@ module start_balance
 contains
    !> The largest unbalanced stress of a prepared run; not known where a material or contact refuses the start. Of the
    !> loads of the first stage those count that the ground carries already: what is more acts at once, on purpose.
-   subroutine find_imbalance(model, run, balance)
-      type(model_t), intent(in) :: model
+   subroutine find_imbalance(run, balance)
       type(run_t), intent(in) :: run
       type(balance_t), intent(out) :: balance
       type(run_t) :: trial
       real(wp), allocatable :: forces(:), touched(:)
-      real(wp) :: areas(2*DISPLACEMENTS, model%dofs%n), stress(model%dofs%n), unbalanced(model%dofs%n), least, standing
+      real(wp) :: areas(2*DISPLACEMENTS, run%model%dofs%n), least, standing
+      real(wp), dimension(run%model%dofs%n) :: stress, unbalanced
       integer :: i
 
       trial = run
       trial%state%v = 0.0_wp
       trial%state%a = 0.0_wp
       trial%next = trial%state
-      if (allocated(trial%system%contacts)) call trial%system%contacts%act(spread(.false., 1, size(model%contacts)))
-      if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, forces)) return
+      if (allocated(trial%system%contacts)) call trial%system%contacts%act(spread(.false., 1, size(run%model%contacts)))
+      if (.not. unbalanced_forces(run%model%domain, run%model%dofs, trial%solution_t, forces)) return
       where (abs(forces) < ROUNDING*trial%assembly%scale) forces = 0.0_wp
       touched = 0*forces
       if (allocated(trial%system%contacts)) then
-         call act_contacts(model, model%stages(1), trial%system%contacts)
-         if (.not. unbalanced_forces(model%domain, model%dofs, trial%solution_t, touched)) return
+         call enter_stage(trial, 1)
+         if (.not. unbalanced_forces(run%model%domain, run%model%dofs, trial%solution_t, touched)) return
          touched = touched - forces
       end if
-      call add_weight_of_water(model, run, forces, standing)
-      call let_go_of_held(model, forces)
-      call add_carried_loads(model, run, touched, forces)
-      call look_around(model, run, standing, areas, stress)
+      call add_weight_of_water(run, forces, standing)
+      call let_go_of_held(run%model, forces)
+      call add_carried_loads(run, touched, forces)
+      call look_around(run, standing, areas, stress)
       unbalanced = 0.0_wp
       do i = 1, size(forces)
          if (abs(forces(i)) > 0.0_wp .and. any(areas(:, i) > 0.0_wp)) unbalanced(i) = abs(forces(i))/maxval(areas(:, i))
@@ -61,12 +61,11 @@ contains
       if (balance%matters) i = maxloc(unbalanced, dim=1, mask=unbalanced > NOTABLE*stress)
       balance%stress = unbalanced(i)
       balance%there = stress(i)
-      balance%x = model%domain%mesh%x(:, model%dofs%node(i))
+      balance%x = run%model%domain%mesh%x(:, run%model%dofs%node(i))
    end subroutine find_imbalance
 
    !> Adds the pressures at time 0 that are those of the water at their edges: water that stands there did so before.
-   subroutine add_weight_of_water(model, run, forces, most)
-      type(model_t), intent(in) :: model
+   subroutine add_weight_of_water(run, forces, most)
       type(run_t), intent(in) :: run
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
       real(wp), intent(out) :: most          !< The largest of them [kPa].
@@ -74,29 +73,28 @@ contains
       integer :: i
 
       most = 0.0_wp
-      do i = 1, size(model%loads)
-         water = water_in(model, run, model%loads(i))
+      do i = 1, size(run%model%loads)
+         water = water_in(run, run%model%loads(i))
          if (.not. water > 0.0_wp) cycle
-         forces = forces + force_of(model%loads(i), factor_at(model, model%loads(i)%amplitude, 0.0_wp))
+         forces = forces + force_of(run%model%loads(i), factor_at(run%model, run%model%loads(i)%amplitude, 0.0_wp))
          most = max(most, water)
       end do
    end subroutine add_weight_of_water
 
    !> Largest pressure of a load of the first stage that is at time 0 that of the pore water wherever it acts, else 0
    !> [kPa].
-   real(wp) function water_in(model, run, load) result(most)
-      type(model_t), intent(in) :: model
+   real(wp) function water_in(run, load) result(most)
       type(run_t), intent(in) :: run
       type(load_t), intent(in) :: load
       real(wp) :: given, p_w
       integer :: k, i
 
       most = 0.0_wp
-      if (load%kind /= LOAD_PRESSURE .or. .not. acts_in(load%stages, model%stages(1)%name)) return
-      associate (x => model%domain%mesh%x, edges => model%domain%mesh%groups(load%group)%edges)
+      if (load%kind /= LOAD_PRESSURE .or. .not. acts_in(load%stages, run%model%stages(1)%name)) return
+      associate (x => run%model%domain%mesh%x, edges => run%model%domain%mesh%groups(load%group)%edges)
          do k = 1, size(edges, 2)
             do i = 1, 2
-               given = factor_at(model, load%amplitude, 0.0_wp)*(load%value &
+               given = factor_at(run%model, load%amplitude, 0.0_wp)*(load%value &
                                                                 + load%value_slope*(x(2, edges(i, k)) - load%datum))
                p_w = run%state%x(AT_P_W, edges(i, k))
                if (abs(given - p_w) > SMALL*max(given, p_w)) then
@@ -142,8 +140,7 @@ contains
    end subroutine let_go_of_held
 
    !> Adds what contacts press with, and every load at time 0, that leaves less without balance.
-   subroutine add_carried_loads(model, run, touched, forces)
-      type(model_t), intent(in) :: model
+   subroutine add_carried_loads(run, touched, forces)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: touched(:)     !< (unknowns) Of contacts [kN].
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
@@ -151,17 +148,17 @@ contains
       integer :: i
 
       call carry(touched)
-      do i = 1, size(model%loads)
-         associate (one => model%loads(i))
-            if (.not. acts_in(one%stages, model%stages(1)%name) .or. water_in(model, run, one) > 0.0_wp) cycle
-            call carry(force_of(one, factor_at(model, one%amplitude, 0.0_wp)))
+      do i = 1, size(run%model%loads)
+         associate (one => run%model%loads(i))
+            if (.not. acts_in(one%stages, run%model%stages(1)%name) .or. water_in(run, one) > 0.0_wp) cycle
+            call carry(force_of(one, factor_at(run%model, one%amplitude, 0.0_wp)))
          end associate
       end do
-      do i = 1, size(model%plates)
-         associate (one => model%plates(i))
+      do i = 1, size(run%model%plates)
+         associate (one => run%model%plates(i))
             if (one%penalty > 0.0_wp .or. one%group == 0) cycle
             load = 0.0_wp
-            load(unknowns_of(one, model%dofs)) = plate_loads(model, one, 0.0_wp)
+            load(unknowns_of(one, run%model%dofs)) = plate_loads(run%model, one, 0.0_wp)
             call carry(load)
          end associate
       end do
@@ -178,8 +175,7 @@ contains
    !> For every displacement the area that a stress on one side of its nodes acts on with it, along r and z, from either
    !> side; and the largest total normal stress around it, less that of water on the ground; 0 without effective
    !> stress [kPa].
-   subroutine look_around(model, run, standing, areas, stress)
-      type(model_t), intent(in) :: model
+   subroutine look_around(run, standing, areas, stress)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: standing                  !< Pressure of the water on the ground [kPa].
       real(wp), intent(out) :: areas(:, :), stress(:)   !< (4, unknowns) [m2], (unknowns)
@@ -188,7 +184,7 @@ contains
 
       areas = 0.0_wp
       stress = 0.0_wp
-      associate (m => model%domain)
+      associate (m => run%model%domain)
          do e = 1, size(m%mesh%t6, 2)
             if (.not. is_present(run%state, e)) cycle
             do g = 1, m%rule
@@ -203,7 +199,7 @@ contains
                      part = gp%weight*[max(0.0_wp, gp%dn(k, :)), max(0.0_wp, -gp%dn(k, :))]
                   end associate
                   do f = 1, DISPLACEMENTS
-                     at = model%dofs%of(f, m%mesh%t6(k, e))
+                     at = run%model%dofs%of(f, m%mesh%t6(k, e))
                      if (at == 0) cycle
                      areas(:, at) = areas(:, at) + part
                      stress(at) = max(stress(at), total)

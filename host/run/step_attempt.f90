@@ -7,70 +7,51 @@ module step_attempt
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at
    use generalised_alpha, only: make_scheme, has_rates, has_inertia
-   use model_types, only: model_t, gravity_at
+   use model_types, only: gravity_at
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use porous_domain, only: copy_state
    use run_state, only: run_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
-   use scene_parts, only: acts_in, stage_t
+   use scene_parts, only: acts_in
    use solution, only: stage_state_t
    implicit none (type, external)
    private
-   public :: begin_stage, resume_stage, try_step
+   public :: begin_stage, try_step
 
    integer, parameter :: CUTS_IN_VAIN = 2   !< At the start of a static stage, until what acts at once is spread.
    real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Spacings of numbers at the present time: its rounding.
 contains
-   !> Sets a run at the start of stage `number`: terms, prescribed values, control of the steps, first accelerations.
-   !> docs/theory/host.md section 4.1. Faults: those of set_step and, for the accelerations, explain_failure.
-   subroutine begin_stage(model, number, run, fault)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: number
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      associate (stage => model%stages(number))
-         run%at = stage_state_t(stage=number, t_start=run%state%time, nominal=stage%dt, x_start=run%state%x)
-         call begin_terms(model, .true., run, fault)
-         if (fault%code /= 0) return
-         run%system%factored = .false.
-         run%assembly%slopes%known = .false.
-         call set_step(model, stage, 0.0_wp, run, fault)
-         if (fault%code /= 0) return
-         call begin_control(model, stage, run)
-         if (has_inertia(stage%kind) .and. stage%solve_start) call first_accelerations(model, stage, run, fault)
-      end associate
-   end subroutine begin_stage
-
-   !> Puts a run that is taken up in the middle of its stage there. Faults: those of the terms.
-   subroutine resume_stage(model, run, fault)
-      type(model_t), intent(in) :: model
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      call begin_terms(model, .false., run, fault)
-   end subroutine resume_stage
-
-   subroutine begin_terms(model, begins, run, fault)
-      type(model_t), intent(in) :: model
-      logical, intent(in) :: begins   !< Else the run is in the middle of its stage.
+   !> Sets a run at the start of a stage that it has entered: terms, prescribed values, control of the steps, first
+   !> accelerations. docs/theory/host.md section 4.1. Faults: those of terms and set_step and, for the accelerations,
+   !> explain_failure.
+   subroutine begin_stage(begins, run, fault)
+      logical, intent(in) :: begins   !< Else the run is taken up in the middle of its stage: the terms alone begin.
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      do i = 1, size(run%terms)
-         if (fault%code == 0) call run%terms(i)%term%begin_stage(model, begins, run%solution_t, fault)
-      end do
-   end subroutine begin_terms
+      associate (stage => run%stage)
+         if (begins) run%at = stage_state_t(stage=run%at%stage, t_start=run%state%time, nominal=stage%dt, &
+                                            x_start=run%state%x)
+         do i = 1, size(run%terms)
+            if (fault%code == 0) call run%terms(i)%term%begin_stage(run%model, begins, run%solution_t, fault)
+         end do
+         if (fault%code /= 0 .or. .not. begins) return
+         run%system%factored = .false.
+         run%assembly%slopes%known = .false.
+         call set_step(0.0_wp, run, fault)
+         if (fault%code /= 0) return
+         call begin_control(run)
+         if (has_inertia(stage%kind) .and. stage%solve_start) call first_accelerations(run, fault)
+      end associate
+   end subroutine begin_stage
 
    !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
    !> docs/theory/host.md section 4.4. Faults: those of set_step; that of explain_failure where no cut is
    !> left, the linear solver failed, or the matrix is singular by no soft point.
-   subroutine try_step(model, stage, dt, run, accepted, fault)
-      type(model_t), intent(inout) :: model   !< The tolerance of its laws follows Newton's method.
-      type(stage_t), intent(in) :: stage
+   subroutine try_step(dt, run, accepted, fault)
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted   !< False also where its error is too large.
@@ -81,32 +62,33 @@ contains
       integer :: i
 
       accepted = .false.
-      if (dt < shortest_step(stage, run)) then
-         call explain_short_step(stage, run, dt, fault)
+      if (dt < shortest_step(run)) then
+         call explain_short_step(run, dt, fault)
          return
       end if
-      run%next%gravity = gravity_at(model, run%state%time + dt)
-      call set_step(model, stage, dt, run, fault)
+      run%next%gravity = gravity_at(run%model, run%state%time + dt)
+      call set_step(dt, run, fault)
       if (fault%code /= 0) return
-      call prepare_rates(stage, dt, run)
-      run%scheme = scheme_of(stage, run, dt)
-      if (any(model%fixes%acceleration)) call follow_accelerations(model, stage, run%scheme, run%state, run%constraint)
-      call take_step(model%domain, model%dofs, run%solution_t)
+      call prepare_rates(dt, run)
+      run%scheme = scheme_of(run, dt)
+      if (any(run%model%fixes%acceleration)) call follow_accelerations(run%model, run%stage, run%scheme, run%state, &
+                                                                       run%constraint)
+      call take_step(run%model%domain, run%model%dofs, run%solution_t)
       if (run%log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
          a0 = run%state%a
          run%state%a = 0.0_wp
-         call take_step(model%domain, model%dofs, run%solution_t)
+         call take_step(run%model%domain, run%model%dofs, run%solution_t)
          if (run%log%outcome /= CONVERGED) run%state%a = a0
       end if
       run%iterations = run%iterations + run%log%iterations
       run%rate_evaluations = run%rate_evaluations + run%log%rate_evaluations
       accepted = run%log%outcome == CONVERGED
       if (accepted) then
-         call judge_step(model, stage, run, accepted)
+         call judge_step(run, accepted)
          if (.not. accepted) run%assembly%slopes%known = .false.
          do i = 1, size(run%terms)
-            call run%terms(i)%term%complete(model, run%solution_t)
+            call run%terms(i)%term%complete(run%model, run%solution_t)
          end do
          return
       end if
@@ -118,80 +100,74 @@ contains
          ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing, or a
          ! contact that an iterate has opened.
          lost = outcome == BODY_FREE .and. run%assembly%replaced == 0
-         if (at%step > 0) lost = lost .and. .not. any([(acts_in(model%contacts(i)%stages, stage%name), &
-                                                        i=1, size(model%contacts))])
+         if (at%step > 0) lost = lost .and. .not. any([(acts_in(run%model%contacts(i)%stages, run%stage%name), &
+                                                        i=1, size(run%model%contacts))])
          share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, outcome == MATERIAL_FAILED)
-         if (at%cuts > stage%cuts .or. outcome == SOLVER_FAILED .or. share*dt < shortest_step(stage, run) .or. &
-             lost) then
-            call explain_failure(model, stage, run, dt, fault)
+         if (at%cuts > run%stage%cuts .or. outcome == SOLVER_FAILED .or. share*dt < shortest_step(run) .or. lost) then
+            call explain_failure(run, dt, fault)
             return
          end if
-         if (.not. has_rates(stage%kind) .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) &
-            call spread_sudden_loads(model, run)
+         if (.not. has_rates(run%stage%kind) .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) &
+            call spread_sudden_loads(run)
          ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
          at%factor = at%factor*share
-         call shorten_step(stage, run)
+         call shorten_step(run)
       end associate
    end subroutine try_step
 
    !> Loads that act at once are the same in a shorter step: from here on they are applied evenly over the stage.
    !> docs/theory/host.md section 4.4.
-   subroutine spread_sudden_loads(model, run)
-      type(model_t), intent(in) :: model
+   subroutine spread_sudden_loads(run)
       type(run_t), intent(inout) :: run
       real(wp), allocatable :: forces(:)
 
       call copy_state(run%state, run%next)
-      run%next%gravity = gravity_at(model, run%state%time)
-      if (unbalanced_forces(model%domain, model%dofs, run%solution_t, forces)) call move_alloc(forces, run%at%sudden)
+      run%next%gravity = gravity_at(run%model, run%state%time)
+      if (unbalanced_forces(run%model%domain, run%model%dofs, run%solution_t, forces)) &
+         call move_alloc(forces, run%at%sudden)
    end subroutine spread_sudden_loads
 
    !> Shorter steps do not come to an end, or do not move the time [s].
-   pure real(wp) function shortest_step(stage, run) result(dt)
-      type(stage_t), intent(in) :: stage
+   pure real(wp) function shortest_step(run) result(dt)
       type(run_t), intent(in) :: run
 
-      dt = max(LEAST_OF_STAGE*stage%duration, LEAST_SPACINGS*spacing(run%state%time))
+      dt = max(LEAST_OF_STAGE*run%stage%duration, LEAST_SPACINGS*spacing(run%state%time))
    end function shortest_step
 
    !> Loads and prescribed unknowns of a step from the state that it starts from, of the scene and of its terms. Its
    !> length is 0 where a stage begins.
-   subroutine set_step(model, stage, dt, run, fault)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine set_step(dt, run, fault)
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       integer :: i
 
       associate (c => run%constraint, until => run%state%time + dt)
-         c%load_0 = load_at(model, stage, run%state%time)
-         c%load_1 = load_at(model, stage, until)
+         c%load_0 = load_at(run%model, run%stage, run%state%time)
+         c%load_1 = load_at(run%model, run%stage, until)
          do i = 1, size(run%terms)
-            if (fault%code == 0) call run%terms(i)%term%before_step(model, dt, run%solution_t, fault)
+            if (fault%code == 0) call run%terms(i)%term%before_step(run%model, dt, run%solution_t, fault)
          end do
          if (fault%code /= 0) return
          if (allocated(run%at%sudden)) then
-            c%load_0 = c%load_0 - (1 - run%at%share_of(stage%duration, run%state%time))*run%at%sudden
-            c%load_1 = c%load_1 - (1 - run%at%share_of(stage%duration, until))*run%at%sudden
+            c%load_0 = c%load_0 - (1 - run%at%share_of(run%stage%duration, run%state%time))*run%at%sudden
+            c%load_1 = c%load_1 - (1 - run%at%share_of(run%stage%duration, until))*run%at%sudden
          end if
       end associate
-      call constrain_step(model, stage, run%state%time + dt, run%at%x_start, run%constraint)
+      call constrain_step(run%model, run%stage, run%state%time + dt, run%at%x_start, run%constraint)
       do i = 1, size(run%terms)
-         call run%terms(i)%term%prescribe(model, run%state%time + dt, run%solution_t)
+         call run%terms(i)%term%prescribe(run%model, run%state%time + dt, run%solution_t)
       end do
-      call complete_constraint(stage, model%dofs, run%at%x_start, run%state%x, run%constraint)
+      call complete_constraint(run%stage, run%model%dofs, run%at%x_start, run%state%x, run%constraint)
    end subroutine set_step
 
-   subroutine first_accelerations(model, stage, run, fault)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine first_accelerations(run, fault)
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (any(model%fixes%acceleration)) call starting_accelerations(model, stage, make_scheme(stage%kind, &
-         stage%rho_inf, stage%dt), run%state%time, run%constraint)
-      call start_accelerations(model%domain, model%dofs, run%solution_t)
-      if (run%log%outcome /= CONVERGED) call explain_failure(model, stage, run, 0.0_wp, fault)
+      if (any(run%model%fixes%acceleration)) call starting_accelerations(run%model, run%stage, &
+         make_scheme(run%stage%kind, run%stage%rho_inf, run%stage%dt), run%state%time, run%constraint)
+      call start_accelerations(run%model%domain, run%model%dofs, run%solution_t)
+      if (run%log%outcome /= CONVERGED) call explain_failure(run, 0.0_wp, fault)
    end subroutine first_accelerations
 end module step_attempt

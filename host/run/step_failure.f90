@@ -7,12 +7,11 @@ module step_failure
    use texts, only: short, whole
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
-   use model_types, only: model_t, term_box_t
-   use convergence, only: log_t, BY_RESIDUAL, BY_CORRECTION
+   use model_types, only: model_t
+   use convergence, only: BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
    use run_state, only: run_t
    use unknown_fields, only: FIELD_NAMES
-   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: explain_failure, explain_short_step, LEAST_OF_STAGE
@@ -21,9 +20,7 @@ module step_failure
 contains
    !> Raises the fault of a step that failed: exit code, place, cause and remedy. Fault EXIT_MATERIAL, EXIT_CONVERGENCE
    !> (also of contacts and of equations that are not finite), EXIT_FREE_BODY or EXIT_SOLVER, by the outcome of its log.
-   subroutine explain_failure(model, stage, run, dt, fault)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine explain_failure(run, dt, fault)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: dt   !< Length of the step [s].
       type(fault_t), intent(inout) :: fault
@@ -33,8 +30,8 @@ contains
       integer :: e, i, node
 
       time = run%state%time + dt
-      place = 'Stage '//trim(stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
-      associate (m => model%domain, log => run%log)
+      place = 'Stage '//trim(run%stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
+      associate (m => run%model%domain, log => run%log)
          select case (log%outcome)
          case (MATERIAL_FAILED)
             e = run%assembly%bad_element
@@ -43,7 +40,7 @@ contains
             if (run%assembly%bad%code == STRAIN_TOO_LARGE) then
                call raise(fault, EXIT_CONVERGENCE, place//', is strained by more than 1 in the step: the iteration '// &
                           'did not converge, the step is far too long, or the load is far beyond the stiffness'// &
-                          unstressed(run)//remarks(model, run%terms, time)//advice(stage, run))
+                          advice(run, time))
                return
             end if
             call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
@@ -52,12 +49,12 @@ contains
             call raise(fault, EXIT_CONVERGENCE, place//run%system%contacts%message()//'.')
          case (BODY_FREE)
             if (run%assembly%replaced > 0) then
-               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//soft_points(model, run)// &
-                          unstressed(run)//model%on_contact(run%at%stage)%words//': add a surcharge or suction '// &
+               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//soft_points(run)// &
+                          unstressed(run)//run%model%on_contact(run%at%stage)%words//': add a surcharge or suction '// &
                           'there, load in smaller steps, or look for a missing &fix.')
                return
             end if
-            alone = model%on_contact(run%at%stage)%words
+            alone = run%model%on_contact(run%at%stage)%words
             if (alone /= '') alone = alone//', and surfaces that only touch hold nothing: let them overlap by a '// &
                'millionth of an edge, give a &plate weight = ''yes'' beside gravity, or begin with a dynamic stage'
             call raise(fault, EXIT_FREE_BODY, place//'the equations are singular: a body can move or a pressure is '// &
@@ -65,53 +62,48 @@ contains
                        'without contact.')
          case (SOLVER_FAILED)
             call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
-                       whole(model%dofs%n)//' unknowns?')
+                       whole(run%model%dofs%n)//' unknowns?')
          case (EQUATIONS_LOST)
             ! The first entry that is not finite, else the largest.
             i = findloc(ieee_is_finite(run%assembly%values), .false., dim=1)
             if (i == 0) i = maxloc(abs(run%assembly%values), dim=1)
-            node = model%dofs%node(count(run%pattern%row <= i))
+            node = run%model%dofs%node(count(run%pattern%row <= i))
             call raise(fault, EXIT_CONVERGENCE, place//'the equations have numbers that are not finite or too '// &
                        'large to be solved; the largest slope is '//short(run%assembly%values(i))//' at '// &
-                       place_of(model, node)//': look at the tangent of the material there, and at the loads'// &
-                       unstressed(run)//remarks(model, run%terms, time)//advice(stage, run))
+                       place_of(run%model, node)//': look at the tangent of the material there, and at the loads'// &
+                       advice(run, time))
          case default
             node = 1
-            if (log%worst_unknown > 0) node = model%dofs%node(log%worst_unknown)
+            if (log%worst_unknown > 0) node = run%model%dofs%node(log%worst_unknown)
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
-                       ' iterations'//soft_points(model, run)//'; '//what_is_left(stage, log)//' (allowed '// &
-                       short(stage%tolerance)//'), worst at '//place_of(model, node)// &
-                       unstressed(run)//remarks(model, run%terms, time)//advice(stage, run))
+                       ' iterations'//soft_points(run)//'; '//what_is_left(run)//' (allowed '// &
+                       short(run%stage%tolerance)//'), worst at '//place_of(run%model, node)//advice(run, time))
          end select
       end associate
    end subroutine explain_failure
 
-   !> Advice where Newton's method does not converge: where shorter attempts have failed as well, none of them.
-   function advice(stage, run) result(text)
-      type(stage_t), intent(in) :: stage
+   !> Likely causes and advice where Newton's method does not converge: where shorter attempts have failed as well, none
+   !> of them.
+   function advice(run, time) result(text)
       type(run_t), intent(in) :: run
-      character(:), allocatable :: text
-
-      text = '; use a smaller dt, more cuts or a better tangent.'
-      if (run%at%cuts <= 1) return
-      text = '. '//whole(run%at%cuts - 1)//' longer attempts failed before it: shorter steps do not help here. Try '
-      if (stage%controlled) text = text//'a given dt (steps = ''given'' in &stage) of the length of the steps before, '
-      text = text//'a better tangent (tangent of the material) or a larger tolerance.'
-   end function advice
-
-   !> Remarks of the terms of the scene on a failure.
-   function remarks(model, terms, time) result(text)
-      type(model_t), intent(in) :: model
-      type(term_box_t), intent(in) :: terms(:)
       real(wp), intent(in) :: time   !< [s]
       character(:), allocatable :: text
       integer :: i
 
-      text = ''
-      do i = 1, size(terms)
-         text = text//terms(i)%term%remark(model, time)
+      text = unstressed(run)
+      do i = 1, size(run%terms)
+         text = text//run%terms(i)%term%remark(run%model, time)
       end do
-   end function remarks
+      if (run%at%cuts <= 1) then
+         text = text//'; use a smaller dt, more cuts or a better tangent.'
+         return
+      end if
+      text = text//'. '//whole(run%at%cuts - 1)//' longer attempts failed before it: shorter steps do not help '// &
+             'here. Try '
+      if (run%stage%controlled) text = text//'a given dt (steps = ''given'' in &stage) of the length of the steps '// &
+                                       'before, '
+      text = text//'a better tangent (tangent of the material) or a larger tolerance.'
+   end function advice
 
    !> Remark that soil began without stress, where it did: the likely cause of a failure.
    function unstressed(run) result(text)
@@ -124,49 +116,40 @@ contains
    end function unstressed
 
    !> Raises the fault of a step that is too short before it is tried. Fault EXIT_CONVERGENCE.
-   subroutine explain_short_step(stage, run, dt, fault)
-      type(stage_t), intent(in) :: stage
+   subroutine explain_short_step(run, dt, fault)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: dt   !< [s]
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: cause
 
-      cause = 'dt, dt_max or output_dt is too short for a stage of '//short(stage%duration)//' s.'
-      if (dt > LEAST_OF_STAGE*stage%duration) cause = 'it is the rounding of the time: divide the scene into runs '// &
-                                                      'that begin at 0 s.'
+      cause = 'dt, dt_max or output_dt is too short for a stage of '//short(run%stage%duration)//' s.'
+      if (dt > LEAST_OF_STAGE*run%stage%duration) &
+         cause = 'it is the rounding of the time: divide the scene into runs that begin at 0 s.'
       if (run%at%factor < 1.0_wp) cause = 'steps before it failed and were cut to '//short(run%at%factor)// &
                                           ' of the given one.'
-      call raise(fault, EXIT_CONVERGENCE, 'Stage '//trim(stage%name)//', time '//short(run%state%time)//' s: the '// &
-                 'next step, '//short(dt)//' s, is below '//short(LEAST_OF_STAGE)//' of the stage or of the time: '// &
-                 cause)
+      call raise(fault, EXIT_CONVERGENCE, 'Stage '//trim(run%stage%name)//', time '//short(run%state%time)//' s: '// &
+                 'the next step, '//short(dt)//' s, is below '//short(LEAST_OF_STAGE)//' of the stage or of the '// &
+                 'time: '//cause)
    end subroutine explain_short_step
 
    !> Remark on how many points were given the elastic stiffness in the last pass, and where most of them are; nothing
    !> if none.
-   function soft_points(model, run) result(text)
-      type(model_t), intent(in) :: model
+   function soft_points(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
+      real(wp) :: x(2)
       integer :: e
 
       text = ''
       if (run%assembly%replaced == 0) return
       e = maxloc(run%assembly%soft, dim=1)
+      associate (mesh => run%model%domain%mesh)
+         x = sum(mesh%x(:, mesh%t6(:3, e)), dim=2)/3
+      end associate
       text = ', also with the elastic stiffness of '//whole(run%assembly%replaced)// &
              ' points that have no stiffness against some strain (tension cut-off or failure), '// &
-             'most of them in element '//whole(e)//', '//point_of(model, e)
+             'most of them in element '//whole(e)//', ('//short(x(1))//', '//short(x(2))//') m'
    end function soft_points
-
-   !> Middle of an element [m].
-   function point_of(model, e) result(text)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: e
-      character(:), allocatable :: text
-      real(wp) :: x(2)
-
-      x = sum(model%domain%mesh%x(:, model%domain%mesh%t6(:3, e)), dim=2)/3
-      text = '('//short(x(1))//', '//short(x(2))//') m'
-   end function point_of
 
    !> Where a node is: the plate that it stands for, or an element and the point [m].
    function place_of(model, node) result(text)
@@ -188,18 +171,19 @@ contains
    end function place_of
 
    !> The error that should have fallen below the tolerance, with its present value.
-   function what_is_left(stage, log) result(text)
-      type(stage_t), intent(in) :: stage
-      type(log_t), intent(in) :: log
+   function what_is_left(run) result(text)
+      type(run_t), intent(in) :: run
       character(:), allocatable :: text
 
-      select case (stage%measure)
-      case (BY_RESIDUAL)
-         text = '|R|/|R_0| '//short(log%reduction)
-      case (BY_CORRECTION)
-         text = '|dx|/|x| '//short(log%correction)
-      case default
-         text = 'error of '//FIELD_NAMES(max(1, log%worst_field))//' '//short(log%error(max(1, log%worst_field)))
-      end select
+      associate (log => run%log)
+         select case (run%stage%measure)
+         case (BY_RESIDUAL)
+            text = '|R|/|R_0| '//short(log%reduction)
+         case (BY_CORRECTION)
+            text = '|dx|/|x| '//short(log%correction)
+         case default
+            text = 'error of '//FIELD_NAMES(max(1, log%worst_field))//' '//short(log%error(max(1, log%worst_field)))
+         end select
+      end associate
    end function what_is_left
 end module step_failure

@@ -9,9 +9,8 @@ module step_landings
    use kinds, only: wp
    use boundary_loads, only: load_at
    use history_shapes, only: kinks_of
-   use model_types, only: model_t
    use run_state, only: run_t
-   use scene_parts, only: amplitude_t, amplitude_at, acts_in, stage_t
+   use scene_parts, only: amplitude_t, amplitude_at, acts_in
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -25,53 +24,52 @@ module step_landings
 contains
    !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
    !> the end of the stage [s]. docs/theory/host.md section 4.5.
-   real(wp) function next_time(model, stage, run, reach) result(next)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   real(wp) function next_time(run, reach) result(next)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: reach   !< No step goes farther than this from the present time [s].
       real(wp) :: now, close
       integer :: i
 
       now = run%state%time
-      next = run%at%t_start + stage%duration
-      close = LAST_STEP*min(stage%duration, max(run%control%controller%dt, SHORTEST*stage%duration))
-      do i = 1, size(model%amplitudes)
-         next = min(next, straight_until(model%amplitudes(i), now, close, min(next, now + reach), &
-                                         CHORD_SHARE*stage%step_tolerance))
+      next = run%at%t_start + run%stage%duration
+      close = LAST_STEP*min(run%stage%duration, max(run%control%controller%dt, SHORTEST*run%stage%duration))
+      do i = 1, size(run%model%amplitudes)
+         next = min(next, straight_until(run%model%amplitudes(i), now, close, min(next, now + reach), &
+                                         CHORD_SHARE*run%stage%step_tolerance))
       end do
-      do i = 1, size(model%fixes)
-         if (.not. acts_in(model%fixes(i)%stages, stage%name)) cycle
-         if (model%fixes(i)%from > now + close) next = min(next, model%fixes(i)%from)
-         if (model%fixes(i)%until > now + close) next = min(next, model%fixes(i)%until)
+      do i = 1, size(run%model%fixes)
+         if (.not. acts_in(run%model%fixes(i)%stages, run%stage%name)) cycle
+         if (run%model%fixes(i)%from > now + close) next = min(next, run%model%fixes(i)%from)
+         if (run%model%fixes(i)%until > now + close) next = min(next, run%model%fixes(i)%until)
       end do
-      if (stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
-         + stage%output_dt*(aint((now - run%at%t_start + close)/stage%output_dt) + 1))
+      if (run%stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
+         + run%stage%output_dt*(aint((now - run%at%t_start + close)/run%stage%output_dt) + 1))
    end function next_time
 
    !> End of a given step: as late as it is asked for, unless it would jump over a kink of a history of known shape, a
    !> whole segment of another, or all the time in which a support acts; then where a controlled step would end [s].
    !> docs/theory/host.md section 4.5.
-   pure real(wp) function end_of_given(model, stage, now, asked) result(until)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: now, asked   !< [s]
-      real(wp) :: close
+   pure real(wp) function end_of_given(run, asked) result(until)
+      type(run_t), intent(in) :: run
+      real(wp), intent(in) :: asked   !< [s]
+      real(wp) :: now, close
       integer :: i
 
+      now = run%state%time
       until = asked
       close = LAST_STEP*(asked - now)
-      do i = 1, size(model%amplitudes)
-         associate (h => model%amplitudes(i), t => model%amplitudes(i)%times)
+      do i = 1, size(run%model%amplitudes)
+         associate (h => run%model%amplitudes(i), t => run%model%amplitudes(i)%times)
             if (size(h%arcs) > 0) until = min(until, minval(t, mask=t > now + close .and. t < asked - close .and. &
                                                             kinks_of(t, h%values, h%arcs)))
             if (any(t(:size(t) - 1) >= now - close .and. t(2:) <= asked + close)) until = min(until, &
-               straight_until(model%amplitudes(i), now, close, asked, CHORD_SHARE*stage%step_tolerance))
+               straight_until(h, now, close, asked, CHORD_SHARE*run%stage%step_tolerance))
          end associate
       end do
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i))
-            if (.not. acts_in(fix%stages, stage%name) .or. fix%from < now - close .or. fix%until > asked - close) cycle
+      do i = 1, size(run%model%fixes)
+         associate (fix => run%model%fixes(i))
+            if (.not. acts_in(fix%stages, run%stage%name)) cycle
+            if (fix%from < now - close .or. fix%until > asked - close) cycle
             until = min(until, merge(fix%from, fix%until, fix%from > now + close))
          end associate
       end do
@@ -116,42 +114,45 @@ contains
    !> Whether something that acts breaks at the end of a step: a support comes or goes, or a history turns by more than
    !> a share of its range within a step like the last. The share is the accuracy of the stage: docs/theory/host.md
    !> section 4.5.
-   pure logical function is_break(model, stage, time, dt)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time, dt   !< [s]
+   pure logical function is_break(run)
+      type(run_t), intent(in) :: run
       real(wp) :: turn
       integer :: i
 
       is_break = .false.
-      do i = 1, size(model%amplitudes)
-         associate (h => model%amplitudes(i))
-            if (.not. any(abs(h%times - time) < LAST_STEP*dt)) cycle
-            ! Where two arcs of a wave meet nothing breaks.
-            if (size(h%arcs) > 0) then
-               if (.not. any(abs(h%times - time) < LAST_STEP*dt .and. kinks_of(h%times, h%values, h%arcs))) cycle
-            end if
-            turn = amplitude_at(h, time + dt) - 2*amplitude_at(h, time) + amplitude_at(h, time - dt)
-            is_break = is_break .or. abs(turn) > stage%step_tolerance*(maxval(h%values) - minval(h%values))
-         end associate
-      end do
-      do i = 1, size(model%fixes)
-         if (acts_in(model%fixes(i)%stages, stage%name)) is_break = is_break &
-            .or. abs(model%fixes(i)%from - time) < LAST_STEP*dt .or. abs(model%fixes(i)%until - time) < LAST_STEP*dt
-      end do
+      associate (time => run%next%time, dt => run%scheme%dt, stage => run%stage)
+         do i = 1, size(run%model%amplitudes)
+            associate (h => run%model%amplitudes(i))
+               if (.not. any(abs(h%times - time) < LAST_STEP*dt)) cycle
+               ! Where two arcs of a wave meet nothing breaks.
+               if (size(h%arcs) > 0) then
+                  if (.not. any(abs(h%times - time) < LAST_STEP*dt .and. kinks_of(h%times, h%values, h%arcs))) cycle
+               end if
+               turn = amplitude_at(h, time + dt) - 2*amplitude_at(h, time) + amplitude_at(h, time - dt)
+               is_break = is_break .or. abs(turn) > stage%step_tolerance*(maxval(h%values) - minval(h%values))
+            end associate
+         end do
+         do i = 1, size(run%model%fixes)
+            associate (fix => run%model%fixes(i))
+               if (acts_in(fix%stages, stage%name)) is_break = is_break .or. abs(fix%from - time) < LAST_STEP*dt &
+                                                               .or. abs(fix%until - time) < LAST_STEP*dt
+            end associate
+         end do
+      end associate
    end function is_break
 
    !> Whether a load history changes or a support comes or goes between two times [s]. docs/theory/host.md section 4.5.
-   pure logical function changes_within(model, from, until) result(changes)
-      type(model_t), intent(in) :: model
+   pure logical function changes_within(run, from, until) result(changes)
+      type(run_t), intent(in) :: run
       real(wp), intent(in) :: from, until
       real(wp) :: first
       integer :: i
 
-      changes = any(model%fixes%from > from .and. model%fixes%from < until) .or. &
-                any(model%fixes%until > from .and. model%fixes%until < until)
-      do i = 1, size(model%amplitudes)
-         associate (h => model%amplitudes(i))
+      associate (fixes => run%model%fixes)
+         changes = any((fixes%from > from .and. fixes%from < until) .or. (fixes%until > from .and. fixes%until < until))
+      end associate
+      do i = 1, size(run%model%amplitudes)
+         associate (h => run%model%amplitudes(i))
             first = amplitude_at(h, from)
             changes = changes .or. abs(amplitude_at(h, until) - first) > 0.0_wp .or. &
                       any(h%times > from .and. h%times < until .and. abs(h%values - first) > 0.0_wp)
@@ -161,22 +162,21 @@ contains
 
    !> Whether a flow may begin at once where a stage does: loads or prescribed values jump, or it is the first one and
    !> has weight or pressures that differ from node to node. docs/theory/host.md section 4.5.
-   function begins_suddenly(model, run) result(at_once)
-      type(model_t), intent(in) :: model
+   function begins_suddenly(run) result(at_once)
       type(run_t), intent(in) :: run   !< With what the stage prescribes at its start.
       logical :: at_once
-      real(wp) :: load(model%dofs%n), before(model%dofs%n)
+      real(wp) :: load(run%model%dofs%n), before(run%model%dofs%n)
       integer :: i, k
 
       associate (x => run%state%x, c => run%constraint, number => run%at%stage)
-         load = load_at(model, model%stages(number), run%state%time)
+         load = load_at(run%model, run%model%stages(number), run%state%time)
          before = 0.0_wp
-         if (number > 1) before = load_at(model, model%stages(number - 1), run%state%time)
+         if (number > 1) before = load_at(run%model, run%model%stages(number - 1), run%state%time)
          at_once = norm2(load - before) > SAME*norm2(load)
          if (number == 1) at_once = at_once .or. abs(run%state%gravity) > 0.0_wp .or. &
             any(abs(x(AT_P_W:AT_P_C, :) - spread(x(AT_P_W:AT_P_C, 1), 2, size(x, 2))) > SAME*maxval(abs(x(AT_P_W:, :))))
-         do i = 1, model%dofs%n
-            associate (f => model%dofs%field(i), node => model%dofs%node(i))
+         do i = 1, run%model%dofs%n
+            associate (f => run%model%dofs%field(i), node => run%model%dofs%node(i))
                if (c%fixed(i)) at_once = at_once .or. abs(c%target(i) - x(f, node)) > SAME*maxval(abs(x(f, :)))
             end associate
          end do

@@ -8,12 +8,10 @@ module step_size
    use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
    use error_norms, only: shift_rates, local_errors, remember, forget, rms
    use generalised_alpha, only: make_scheme, scheme_t, has_rates, has_inertia, is_flow
-   use model_types, only: model_t
    use run_state, only: run_t
    use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
-   use scene_parts, only: stage_t
    implicit none (type, external)
    private
    public :: begin_control, negligible_changes, next_step, scheme_of, prepare_rates, judge_step, shorten_step, &
@@ -40,67 +38,63 @@ module step_size
                                                   !< than its rounding times the condition of a matrix, 1e-16 times 1e7.
 contains
    !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
-   subroutine begin_control(model, stage, run)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine begin_control(run)
       type(run_t), intent(inout) :: run
       logical :: anew
 
       associate (c => run%control)
          anew = .not. allocated(c%x_first)
-         if (.not. anew) anew = model%stages(run%at%stage - 1)%zero_displacements
-         if (anew) c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(model%contacts), c)
+         if (.not. anew) anew = run%model%stages(run%at%stage - 1)%zero_displacements
+         if (anew) c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(run%model%contacts), c)
          c%x_first = run%state%x
          c%touching = closed_contacts(run, run%state%x)
          call sudden(run%state%time, run)
-         if (.not. stage%controlled) return
-         c%controller = new_controller(first_step(model, stage, run))
+         if (.not. run%stage%controlled) return
+         c%controller = new_controller(first_step(run))
          c%start_up = START_UP_STEPS*c%controller%dt
          ! What moves already and meets something errs in the first step as in any later one.
-         if (has_inertia(stage%kind) .and. any(abs(run%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) c%start_up = 0.0_wp
+         if (has_inertia(run%stage%kind) .and. any(abs(run%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) c%start_up = 0.0_wp
       end associate
    end subroutine begin_control
 
    !> First step: that of the scene, or a share of the span to the first break of what acts.
-   real(wp) function first_step(model, stage, run) result(dt)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   real(wp) function first_step(run) result(dt)
       type(run_t), intent(in) :: run
       real(wp) :: span
 
-      span = next_time(model, stage, run, stage%duration) - run%state%time
+      span = next_time(run, run%stage%duration) - run%state%time
       ! Nothing tells of the error of the first step of a flow: that of the scene may be shorter than what the tolerance
       ! asks for, or the whole stage, not between.
-      if (stage%dt > 0.0_wp .and. .not. (is_flow(stage%kind) .and. stage%dt < span)) then
-         dt = min(stage%dt, stage%dt_max)
+      if (run%stage%dt > 0.0_wp .and. .not. (is_flow(run%stage%kind) .and. run%stage%dt < span)) then
+         dt = min(run%stage%dt, run%stage%dt_max)
          return
       end if
-      if (.not. has_rates(stage%kind)) then
+      if (.not. has_rates(run%stage%kind)) then
          ! The answer of a material with a memory depends on the way there; nothing tells of the error of a single step.
          dt = span
-         if (depends_on_path(model) .and. changes_within(model, run%state%time, run%state%time + stage%duration)) &
-            dt = span*min(FIRST_STATIC, max(stage%step_tolerance, SHORTEST))
-      else if (is_flow(stage%kind)) then
+         if (depends_on_path(run) .and. changes_within(run, run%state%time, run%state%time + run%stage%duration)) &
+            dt = span*min(FIRST_STATIC, max(run%stage%step_tolerance, SHORTEST))
+      else if (is_flow(run%stage%kind)) then
          ! What a load leaves at once flows off with the root of time. Where nothing is sudden a step that short would
          ! drown what it changes in rounding.
-         dt = span*min(FIRST_FLOW, max(merge(stage%step_tolerance**2, stage%step_tolerance, &
-                                             begins_suddenly(model, run)), SHORTEST))
+         dt = span*min(FIRST_FLOW, max(merge(run%stage%step_tolerance**2, run%stage%step_tolerance, &
+                                             begins_suddenly(run)), SHORTEST))
       else
          ! Nothing is there yet to compare its error with; what begins from rest grows with the square of time.
-         dt = span*FIRST_SHARE*sqrt(stage%step_tolerance)
+         dt = span*FIRST_SHARE*sqrt(run%stage%step_tolerance)
       end if
-      if (stage%dt > 0.0_wp) dt = min(dt, stage%dt)
-      dt = min(dt, stage%dt_max)
+      if (run%stage%dt > 0.0_wp) dt = min(dt, run%stage%dt)
+      dt = min(dt, run%stage%dt_max)
    end function first_step
 
    !> Whether a material of the model has a memory: its stress is no function of its strain.
-   pure logical function depends_on_path(model)
-      type(model_t), intent(in) :: model
+   pure logical function depends_on_path(run)
+      type(run_t), intent(in) :: run
       integer :: i
 
       depends_on_path = .false.
-      do i = 1, size(model%domain%regions)
-         depends_on_path = depends_on_path .or. .not. model%domain%regions(i)%law%has_energy
+      do i = 1, size(run%model%domain%regions)
+         depends_on_path = depends_on_path .or. .not. run%model%domain%regions(i)%law%has_energy
       end do
    end function depends_on_path
 
@@ -114,34 +108,30 @@ contains
    end subroutine sudden
 
    !> Whether a stage has come to its end. Up to rounding.
-   pure logical function is_over(stage, run)
-      type(stage_t), intent(in) :: stage
+   pure logical function is_over(run)
       type(run_t), intent(in) :: run
       real(wp) :: rounding
 
       rounding = LAST_STEP*run%at%nominal*run%at%factor
-      if (stage%controlled) rounding = max(LAST_STEP*SHORTEST*stage%duration, 4*spacing(run%state%time))
-      is_over = run%at%t_start + stage%duration - run%state%time <= rounding
+      if (run%stage%controlled) rounding = max(LAST_STEP*SHORTEST*run%stage%duration, 4*spacing(run%state%time))
+      is_over = run%at%t_start + run%stage%duration - run%state%time <= rounding
    end function is_over
 
    !> Length of the next attempt [s]. docs/theory/host.md sections 4.4 and 4.5.
-   real(wp) function next_step(model, stage, run) result(dt)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   real(wp) function next_step(run) result(dt)
       type(run_t), intent(in) :: run
       real(wp) :: left
 
       dt = run%at%nominal*run%at%factor
-      left = run%at%t_start + stage%duration - run%state%time
-      if (.not. stage%controlled) then
-         if (allocated(stage%ends)) dt = min(left, run%at%factor*(next_end(stage, run) - run%state%time))
+      left = run%at%t_start + run%stage%duration - run%state%time
+      if (.not. run%stage%controlled) then
+         if (allocated(run%stage%ends)) dt = min(left, run%at%factor*(next_end(run) - run%state%time))
          if (dt > left*(1 - LAST_STEP)) dt = left
-         if (.not. allocated(stage%ends)) dt = end_of_given(model, stage, run%state%time, run%state%time + dt) &
-                                               - run%state%time
+         if (.not. allocated(run%stage%ends)) dt = end_of_given(run, run%state%time + dt) - run%state%time
          return
       end if
-      dt = min(run%control%controller%dt, stage%dt_max)
-      left = next_time(model, stage, run, 2*dt) - run%state%time
+      dt = min(run%control%controller%dt, run%stage%dt_max)
+      left = next_time(run, 2*dt) - run%state%time
       if (dt > left*(1 - LAST_STEP)) then
          dt = left
       else if (2*dt > left) then
@@ -152,55 +142,49 @@ contains
 
    !> Changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa]. docs/theory/host.md
    !> section 5.1.
-   pure function negligible_changes(stage, run) result(changes)
-      type(stage_t), intent(in) :: stage
+   pure function negligible_changes(run) result(changes)
       type(run_t), intent(in) :: run
       real(wp) :: changes(FIELDS)
 
       changes = 0.0_wp
-      if (stage%controlled) changes(DISPLACEMENTS + 1:) = NEWTON_SHARE*stage%step_tolerance**LOCAL &
+      if (run%stage%controlled) changes(DISPLACEMENTS + 1:) = NEWTON_SHARE*run%stage%step_tolerance**LOCAL &
                                                           *run%control%scale(DISPLACEMENTS + 1:)
    end function negligible_changes
 
    !> The next of the times that given steps end at [s].
-   pure real(wp) function next_end(stage, run)
-      type(stage_t), intent(in) :: stage
+   pure real(wp) function next_end(run)
       type(run_t), intent(in) :: run
 
-      next_end = run%at%t_start + stage%duration
-      associate (ends => run%at%t_start + stage%ends)
+      next_end = run%at%t_start + run%stage%duration
+      associate (ends => run%at%t_start + run%stage%ends)
          next_end = min(next_end, minval(ends, mask=ends > run%state%time + LAST_STEP*run%at%nominal))
       end associate
    end function next_end
 
    !> Scheme of the step to come. Where a flow begins the rates before would take a share of what flows in that step out
    !> of the balances: docs/theory/host.md section 4.2.
-   pure type(scheme_t) function scheme_of(stage, run, dt) result(scheme)
-      type(stage_t), intent(in) :: stage
+   pure type(scheme_t) function scheme_of(run, dt) result(scheme)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: dt   !< [s]
       logical :: begins
 
-      begins = run%at%step == 0 .or. (stage%controlled .and. run%control%fresh == 0)
-      scheme = make_scheme(stage%kind, stage%rho_inf, dt, is_flow(stage%kind) .and. begins)
+      begins = run%at%step == 0 .or. (run%stage%controlled .and. run%control%fresh == 0)
+      scheme = make_scheme(run%stage%kind, run%stage%rho_inf, dt, is_flow(run%stage%kind) .and. begins)
    end function scheme_of
 
    !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5; where
    !> steps are given they stay.
-   subroutine prepare_rates(stage, dt, run)
-      type(stage_t), intent(in) :: stage
+   subroutine prepare_rates(dt, run)
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
 
-      if (stage%controlled) call shift_rates(make_scheme(stage%kind, stage%rho_inf, dt), run%control%memory, &
-                                             run%state%v, run%state%s_rate, run%state%outflow)
+      if (run%stage%controlled) call shift_rates(make_scheme(run%stage%kind, run%stage%rho_inf, dt), &
+         run%control%memory, run%state%v, run%state%s_rate, run%state%outflow)
    end subroutine prepare_rates
 
    !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
    !> docs/theory/host.md section 4.5. Where steps are given every one stands.
-   subroutine judge_step(model, stage, run, accepted)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine judge_step(run, accepted)
       type(run_t), intent(inout) :: run
       logical, intent(out) :: accepted
       real(wp) :: error(FIELDS, size(run%state%x, 2)), touching(size(run%control%touching))
@@ -209,43 +193,41 @@ contains
       accepted = .true.
       associate (c => run%control)
          c%error = 0.0_wp
-         if (stage%controlled) then
+         if (run%stage%controlled) then
             touching = c%touching
-            if (has_inertia(stage%kind)) touching = closed_contacts(run, run%next%x)
+            if (has_inertia(run%stage%kind)) touching = closed_contacts(run, run%next%x)
             closes = any(touching > c%touching)
-            if (closes) accepted = ends_at_closing(stage, run)
+            if (closes) accepted = ends_at_closing(run)
             if (.not. accepted) return
-            call estimate_error(model, stage, run, error, known)
+            call estimate_error(run, error, known)
             ! What is met before any correction is at rest, or goes on as foreseen: the rest is rounding.
             if (run%log%balanced) error = 0.0_wp
-            call weigh_error(model, stage, error, known, run, accepted)
+            call weigh_error(error, known, run, accepted)
             if (closes .and. .not. accepted) call end_where_it_closes(run)
             if (.not. accepted) return
             c%touching = touching
             c%located = .false.
          end if
-         c%scale = scales(run, size(run%state%x, 2) - size(model%domain%bodies))
+         c%scale = scales(run, size(run%state%x, 2) - size(run%model%domain%bodies))
       end associate
    end subroutine judge_step
 
    !> Errors of all unknowns in the step under way, and of which fields they are known.
-   subroutine estimate_error(model, stage, run, error, known)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine estimate_error(run, error, known)
       type(run_t), intent(in) :: run
       real(wp), intent(out) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]; 0 where not known.
       logical, intent(out) :: known(FIELDS)
 
       associate (c => run%control)
-         if (.not. has_rates(stage%kind) .and. .not. depends_on_path(model)) then
+         if (.not. has_rates(run%stage%kind) .and. .not. depends_on_path(run)) then
             ! Without a memory and without a flow the answer does not depend on the steps.
             error = 0.0_wp
             known = .true.
             return
          end if
-         call local_errors(make_scheme(stage%kind, stage%rho_inf, run%scheme%dt), c%memory, run%state%x, run%state%v, &
-                           run%state%a, run%next%x, run%next%v, run%next%a, error, known)
-         if (is_flow(stage%kind) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(run)
+         call local_errors(make_scheme(run%stage%kind, run%stage%rho_inf, run%scheme%dt), c%memory, run%state%x, &
+                           run%state%v, run%state%a, run%next%x, run%next%v, run%next%a, error, known)
+         if (is_flow(run%stage%kind) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(run)
          ! Saturated soil holds no air and has no suction: its number follows no balance that holds it, and rings.
          where (run%state%x(AT_P_C, :) < 0.0_wp .and. run%next%x(AT_P_C, :) < 0.0_wp) error(AT_P_C, :) = 0.0_wp
       end associate
@@ -271,9 +253,7 @@ contains
 
    !> Whether the error of a controlled step lets it stand, the length of the next attempt, and what limits it: the
    !> largest error of a field over its largest change, against the local tolerance.
-   subroutine weigh_error(model, stage, error, known, run, accepted)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine weigh_error(error, known, run, accepted)
       real(wp), intent(in) :: error(:, :)    !< (FIELDS, nodes) [m, kPa]
       logical, intent(in) :: known(FIELDS)
       type(run_t), intent(inout) :: run
@@ -282,28 +262,28 @@ contains
       integer :: bodies, by
 
       associate (c => run%control, dt => run%scheme%dt)
-         bodies = size(run%state%x, 2) - size(model%domain%bodies)
+         bodies = size(run%state%x, 2) - size(run%model%domain%bodies)
          shares = field_norms(error(:, :bodies))/scales(run, bodies)
          shares(:DISPLACEMENTS) = max(shares(:DISPLACEMENTS), share_of_plates(error, bodies, run))
          c%error = maxval(shares, mask=known)
          ratio = -1.0_wp
-         if (any(known)) ratio = c%error/(stage%step_tolerance**LOCAL &
+         if (any(known)) ratio = c%error/(run%stage%step_tolerance**LOCAL &
                                           *max(1.0_wp, c%start_up/(run%next%time - c%t_sudden))**2)
          c%error = max(c%error, 0.0_wp)
          asked = c%controller%dt
-         if (dt <= SHORTEST*stage%duration) ratio = min(ratio, 1.0_wp)
+         if (dt <= SHORTEST*run%stage%duration) ratio = min(ratio, 1.0_wp)
          call judge(c%controller, dt, ratio, accepted)
-         c%controller%dt = max(c%controller%dt, SHORTEST*stage%duration)
+         c%controller%dt = max(c%controller%dt, SHORTEST*run%stage%duration)
          if (.not. accepted) then
             c%rejected = c%rejected + 1
             return
          end if
          if (.not. any(known)) c%controller%dt = asked
-         if (dt < asked*(1 - LAST_STEP) .and. dt < stage%dt_max) then
+         if (dt < asked*(1 - LAST_STEP) .and. dt < run%stage%dt_max) then
             by = BY_TIMES
-         else if (dt >= stage%dt_max) then
+         else if (dt >= run%stage%dt_max) then
             by = BY_LARGEST
-         else if (dt <= SHORTEST*stage%duration) then
+         else if (dt <= SHORTEST*run%stage%duration) then
             by = BY_SMALLEST
          else if (c%controller%dt > asked .or. ratio < 0.0_wp) then
             by = BY_GROWTH
@@ -365,11 +345,10 @@ contains
 
    !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
    !> 4.4; nothing where steps are given.
-   subroutine shorten_step(stage, run)
-      type(stage_t), intent(in) :: stage
+   subroutine shorten_step(run)
       type(run_t), intent(inout) :: run
 
-      if (.not. stage%controlled) return
+      if (.not. run%stage%controlled) return
       run%control%controller%dt = run%scheme%dt*run%at%factor
       run%control%controller%held = .true.
       if (run%control%memory%based) then
@@ -378,21 +357,19 @@ contains
          run%state%outflow = run%control%memory%base_outflow
       end if
       ! The rate of a static step before holds still; a flow may have failed where something begins.
-      if (has_rates(stage%kind)) call forget(run%control%memory)
+      if (has_rates(run%stage%kind)) call forget(run%control%memory)
       run%at%factor = 1.0_wp
    end subroutine shorten_step
 
    !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
    !> docs/theory/host.md section 4.5. Where steps are given their length does not follow.
-   subroutine keep_step(model, stage, run)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+   subroutine keep_step(run)
       type(run_t), intent(inout) :: run
       logical :: breaks
 
-      if (.not. stage%controlled) return
-      breaks = .not. has_inertia(stage%kind) .and. is_break(model, stage, run%next%time, run%scheme%dt)
-      associate (c => run%control, dt => run%scheme%dt)
+      if (.not. run%stage%controlled) return
+      breaks = .not. has_inertia(run%stage%kind) .and. is_break(run)
+      associate (c => run%control, dt => run%scheme%dt, stage => run%stage)
          call remember(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%next%x, run%state%v, &
                        run%state%s_rate, run%state%outflow)
          c%fresh = c%fresh + 1

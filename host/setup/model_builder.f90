@@ -3,7 +3,6 @@
 !> unknowns numbered.
 module model_builder
    use acting_places, only: check_ground, check_sides
-   use boundary_builder, only: list_actions
    use kinds, only: wp
    use faults, only: fault_t, raise
    use degrees_of_freedom, only: number_unknowns
@@ -59,7 +58,6 @@ contains
       call build('load')
       call build('contact')
       call build('tie')
-      call list_actions(model)
       if (fault%code == 0) call build_terms(scene, model, fault)
       if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
@@ -125,7 +123,7 @@ contains
       end associate
       allocate (model%materials(0), model%curves(0), model%regions(0), model%amplitudes(0), model%stages(0), &
                 model%initials(0), model%fixes(0), model%loads(0), model%plates(0), model%contacts(0), model%ties(0), &
-                model%output%points(0))
+                model%actions(0), model%output%points(0))
    end subroutine begin_model
 
    !> Threads of the element loop: those asked for, or as many as have work enough, within OMP_NUM_THREADS. A thread

@@ -29,7 +29,7 @@ contains
    subroutine check(file)
       character(*), intent(in) :: file
       type(scene_t) :: scene
-      type(model_t) :: model
+      type(model_t), target :: model
       type(run_t) :: run
       type(fault_t) :: fault
 

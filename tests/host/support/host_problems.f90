@@ -34,24 +34,26 @@ contains
 
    !> Runs all stages without observers.
    subroutine run_unseen(model, run, fault)
-      type(model_t), intent(inout) :: model
+      type(model_t), intent(inout), target :: model
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       type(observers_t) :: nobody
 
-      call run_stages(model, run, nobody, fault)
+      run%model => model
+      call run_stages(run, nobody, fault)
    end subroutine run_unseen
 
    !> Runs all stages; the ledger at their end.
    subroutine run_with_ledger(model, run, ledger, fault)
-      type(model_t), intent(inout) :: model
+      type(model_t), intent(inout), target :: model
       type(run_t), intent(inout) :: run
       type(ledger_t), intent(out) :: ledger
       type(fault_t), intent(inout) :: fault
       type(observers_t) :: observers
 
+      run%model => model
       call observers%add(ledger_observer_t())
-      call run_stages(model, run, observers, fault)
+      call run_stages(run, observers, fault)
       select type (observer => observers%list(1)%observer)
       type is (ledger_observer_t)
          ledger = observer%ledger
@@ -73,7 +75,7 @@ contains
    !> A scene from its text, with the fault for the caller.
    subroutine ask(text, model, run, fault)
       character(*), intent(in) :: text
-      type(model_t), intent(out) :: model
+      type(model_t), intent(out), target :: model
       type(run_t), intent(out) :: run
       type(fault_t), intent(inout) :: fault
       type(scene_t) :: scene
