@@ -20,9 +20,6 @@ module material_elastic
       procedure :: initial_state
       procedure :: update
       procedure :: message
-      procedure :: default_void_ratio
-      procedure :: void_ratio
-      procedure :: saturation
    end type elastic_t
 contains
    !> The law of a group. title and fault stay as they are. Young's modulus in kPa.
@@ -51,6 +48,8 @@ contains
       law%has_energy = .true.
       law%state_names = [character(NAME_LENGTH) :: 'void_ratio', 'saturation']
       law%n_state = size(law%state_names)
+      law%place_e = PLACE_E
+      law%place_s_w = PLACE_S_W
    end function isotropic
 
    subroutine initial_state(self, stress, suction, void_ratio, state, text)
@@ -112,24 +111,4 @@ contains
 
       write (text, '(a,i0,a,es9.2,a)') 'the elastic law never fails (code ', report%code, ', E = ', self%young, ' kPa)'
    end subroutine message
-
-   pure real(wp) function default_void_ratio(self)
-      class(elastic_t), intent(in) :: self
-
-      default_void_ratio = 0.0_wp
-   end function default_void_ratio
-
-   pure real(wp) function void_ratio(self, state)
-      class(elastic_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      void_ratio = state(PLACE_E)
-   end function void_ratio
-
-   pure real(wp) function saturation(self, state)
-      class(elastic_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      saturation = state(PLACE_S_W)
-   end function saturation
 end module material_elastic

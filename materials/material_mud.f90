@@ -33,17 +33,12 @@ module material_mud
       real(wp), allocatable :: prepared(:)   !< PROPS, checked, in the library's own form.
       integer(c_int) :: given_tangent = 0               !< Kind of tangent in PROPS; 0: none.
       integer(c_int) :: tangent = MUD_TANGENT_ELASTIC   !< Kind that updates return where one is asked for.
-      integer :: place_e = 0, place_s_w = 0   !< In the state.
-      real(wp) :: e_0 = 0.0_wp                !< Void ratio of PROPS [-].
       real(wp) :: fade = 1.0_wp               !< Stress ratios at the start of an update are multiplied by it [-].
       logical, allocatable :: is_ratio(:)     !< Whether a state variable is a stress ratio. (n_state)
    contains
       procedure :: initial_state
       procedure :: update
       procedure :: message
-      procedure :: default_void_ratio
-      procedure :: void_ratio
-      procedure :: saturation
       procedure :: retention
       procedure :: preset_saturation
       procedure :: save_update
@@ -101,7 +96,7 @@ contains
       law%tolerance = law%props(property_index('tolerance'))
       law%given_tolerance = not_the_default('tolerance', law%tolerance)
       law%given_scheme = not_the_default('scheme', law%props(property_index('scheme')))
-      law%unguarded = releases_pressure(law%props)
+      law%unguarded = nint(law%props(property_index('cutoff'))) == 0
       law%overcounts_cycles = .true.
       law%e_0 = law%props(property_index('e_0'))
       law%n_guards = size(GUARDS)
@@ -111,28 +106,13 @@ contains
       do i = 1, law%n_state
          law%state_names(i) = statev_name(i)
       end do
-      law%is_ratio = [(is_stress_ratio(law%state_names(i)), i=1, law%n_state)]
+      law%is_ratio = [(index(law%state_names(i), 'memory') == 1 .or. index(law%state_names(i), 'target') == 1, &
+                       i=1, law%n_state)]
       law%place_e = statev_index('void_ratio')
       law%place_s_w = statev_index('saturation')
       if (min(law%place_e, law%place_s_w) < 1) call raise(fault, EXIT_INPUT, &
          'The library keeps no void_ratio or no saturation; program and library do not match.')
    end subroutine fill_mud
-
-   !> Whether a state variable, or what follows its name as a number of the component, is a stress ratio.
-   pure logical function is_stress_ratio(name)
-      character(*), intent(in) :: name
-
-      is_stress_ratio = index(name, 'memory') == 1 .or. index(name, 'target') == 1
-   end function is_stress_ratio
-
-   !> Whether nothing keeps p' above zero: without the tension cut-off.
-   logical function releases_pressure(props)
-      real(wp), intent(in) :: props(:)
-      integer :: guard
-
-      guard = property_index('cutoff')
-      releases_pressure = nint(props(guard)) == 0
-   end function releases_pressure
 
    logical function not_the_default(name, value)
       character(*), intent(in) :: name
@@ -309,35 +289,12 @@ contains
       type(mud_report) :: of_library
       character(BUFFER) :: raw
 
-      of_library = mud_report(status=report%code, subject=report%subject, index=report%entry, n_rate=report%n_rate, &
-                              n_substep=report%n_substep, n_reject=report%n_reject, n_reset=0, n_floor=0, n_cap_d=0, &
-                              n_cap_h=0, n_hysteresis=0, n_iso_kept=0, n_no_root=0, n_min_step=0, n_open=0, &
-                              n_tensile=0, n_turns_cleared=0, value=report%value, lower=report%lower, &
-                              upper=report%upper, reached=report%reached, pnewdt=report%factor)
+      of_library = mud_report(status=report%code, subject=report%subject, index=report%entry, value=report%value, &
+                              lower=report%lower, upper=report%upper, reached=report%reached)
       raw = c_null_char
       if (mud_message(of_library, raw, BUFFER) < 0) raw = 'Status '//whole(report%code)//'.'//c_null_char
       text = from_c(raw)
    end subroutine message
-
-   pure real(wp) function default_void_ratio(self)
-      class(mud_t), intent(in) :: self
-
-      default_void_ratio = self%e_0
-   end function default_void_ratio
-
-   pure real(wp) function void_ratio(self, state)
-      class(mud_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      void_ratio = state(self%place_e)
-   end function void_ratio
-
-   pure real(wp) function saturation(self, state)
-      class(mud_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      saturation = state(self%place_s_w)
-   end function saturation
 
    !> Degree of saturation by the library's own curve; for an invalid void ratio the result is full saturation and has
    !> no meaning.

@@ -73,6 +73,8 @@ module material_point
 
    type, abstract :: material_t
       integer :: n_state = 0                !< State variables a point.
+      integer :: place_e = 0, place_s_w = 0      !< Places of the void ratio and of the saturation in the state.
+      real(wp) :: e_0 = 0.0_wp              !< Void ratio where a start gives none, 0: the law has none [-].
       logical :: has_energy = .false.       !< The stress has a potential: an elastic law.
       logical :: has_retention = .false.    !< The law computes its saturation itself, without a curve beside it.
       logical :: saturation_is_state = .false.   !< The saturation has a history: retention() is where it starts, no
@@ -94,9 +96,8 @@ module material_point
       procedure(initial_state_i), deferred :: initial_state
       procedure(update_i), deferred :: update
       procedure(message_i), deferred :: message
-      procedure(value_i), deferred :: default_void_ratio
-      procedure(of_state_i), deferred :: void_ratio
-      procedure(of_state_i), deferred :: saturation
+      procedure, non_overridable :: void_ratio
+      procedure, non_overridable :: saturation
       procedure :: retention => retention_by_curve
       procedure :: preset_saturation => cannot_preset
       procedure :: elastic_tangent => tangent_at_rest
@@ -150,21 +151,24 @@ module material_point
          type(batch_report_t), intent(in) :: report
          character(*), intent(out) :: text
       end subroutine message_i
-
-      !> Void ratio that the law starts with where none is given, 0 if it has none [-].
-      pure real(wp) function value_i(self)
-         import :: material_t, wp
-         class(material_t), intent(in) :: self
-      end function value_i
-
-      !> A quantity that the state holds.
-      pure real(wp) function of_state_i(self, state)
-         import :: material_t, wp
-         class(material_t), intent(in) :: self
-         real(wp), intent(in) :: state(:)   !< n_state or more
-      end function of_state_i
    end interface
 contains
+   !> Void ratio that a state holds [-].
+   pure real(wp) function void_ratio(self, state)
+      class(material_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)   !< n_state or more
+
+      void_ratio = state(self%place_e)
+   end function void_ratio
+
+   !> Degree of saturation that a state holds [-].
+   pure real(wp) function saturation(self, state)
+      class(material_t), intent(in) :: self
+      real(wp), intent(in) :: state(:)   !< n_state or more
+
+      saturation = state(self%place_s_w)
+   end function saturation
+
    !> Sentence on the void ratios and mean effective stresses that are outside the tests behind a law; blank: none is.
    pure function untested(law, e, p) result(text)
       class(material_t), intent(in) :: law

@@ -46,9 +46,6 @@ module material_umat
       procedure :: initial_state
       procedure :: update
       procedure :: message
-      procedure :: default_void_ratio
-      procedure :: void_ratio
-      procedure :: saturation
       procedure :: remarks
       procedure :: find_varying
       procedure :: change_over_step
@@ -112,6 +109,8 @@ contains
       if (fault%code /= 0) return
 
       law%n_state = law%n_statv + OWN
+      law%place_e = law%n_statv + OWN_E
+      law%place_s_w = law%n_statv + OWN_S_W
       allocate (law%state_names(law%n_state))
       do i = 1, law%n_statv
          law%state_names(i) = 'statev_'//whole(i)
@@ -173,8 +172,8 @@ contains
       sat = self%retention(suction, void_ratio)
       before = 0.0_wp
       if (self%void_ratio_at > 0) before(self%void_ratio_at, 1) = void_ratio
-      before(self%n_statv + OWN_E, 1) = void_ratio
-      before(self%n_statv + OWN_S_W, 1) = sat%s
+      before(self%place_e, 1) = void_ratio
+      before(self%place_s_w, 1) = sat%s
       at_rest = 0.0_wp
       stress0(:, 1) = stress
       call self%update(1, stress0, before, at_rest, [suction], [0.0_wp], .false., response, after, report)
@@ -225,7 +224,7 @@ contains
       own = self%n_statv
       c = self%components
       shift = 0.0_wp
-      if (self%total) shift = saturation(self, state)*suction
+      if (self%total) shift = self%saturation(state)*suction
       strain0 = state(own + OWN_STRAIN + 1:own + OWN_STRAIN + 6)
       do i = 1, 6
          stress_(i) = stress(self%order(i)) + merge(shift, 0.0_wp, i <= 3)
@@ -259,7 +258,7 @@ contains
       end if
 
       p_c = suction + d_suction
-      e = swollen(state(own + OWN_E), sum(strain(1:3)))
+      e = swollen(state(self%place_e), sum(strain(1:3)))
       if (self%void_ratio_at > 0) e = state(self%void_ratio_at)
       if (self%saturation_at > 0) then
          sat%s = state(self%saturation_at)
@@ -272,8 +271,8 @@ contains
       end if
       state(own + OWN_STRAIN + 1:own + OWN_STRAIN + 6) = state(own + OWN_STRAIN + 1:own + OWN_STRAIN + 6) + strain
       state(own + OWN_COUNT) = time(1) + STEP
-      state(own + OWN_E) = e
-      state(own + OWN_S_W) = sat%s
+      state(self%place_e) = e
+      state(self%place_s_w) = sat%s
       response%void_ratio(g) = e
       response%s_w(g) = sat%s
       shift = 0.0_wp
@@ -325,26 +324,6 @@ contains
          text = trim(text)//' returns a stress or a DDSDDE that is not finite.'
       end if
    end subroutine message
-
-   pure real(wp) function default_void_ratio(self)
-      class(umat_t), intent(in) :: self
-
-      default_void_ratio = 0.0_wp
-   end function default_void_ratio
-
-   pure real(wp) function void_ratio(self, state)
-      class(umat_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      void_ratio = state(self%n_statv + OWN_E)
-   end function void_ratio
-
-   pure real(wp) function saturation(self, state)
-      class(umat_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      saturation = state(self%n_statv + OWN_S_W)
-   end function saturation
 
    !> Any entry of PROPS: what it means is known to the UMAT and the user.
    subroutine find_varying(self, name, place, text)

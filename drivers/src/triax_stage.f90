@@ -9,11 +9,11 @@ module triax_stage
    use, intrinsic :: iso_fortran_env, only: wp => real64
    implicit none (type, external)
    private
-   public :: test_stage_t, quantity_t, set_constraints, quantity_rows, leads_of, controls_by, keeps_volume, &
+   public :: test_stage_t, set_constraints, quantity_rows, leads_of, controls_by, keeps_volume, &
              shear_control, general_control
-   public :: CONTROL_NAMES, QUANTITIES, STRAIN_PATH, STRESS_PATH, LINEAR, CONSTANT_NET_STRESS
+   public :: CONTROL_NAMES, QUANTITIES, LINEAR
    public :: BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
-   public :: PER_STRAIN, PER_PRESSURE, PER_SHARE, ROWS
+   public :: PER_PRESSURE, ROWS
 
    integer, parameter :: ROWS = 6          !< Constraints of a stage beside the one on suction.
 
@@ -22,27 +22,55 @@ module triax_stage
                          BY_SUCTION = 8, BY_D_EPS = 9, BY_D_SIGMA = 10, BY_CHANGES = 11
    integer, parameter :: PER_STRAIN = 1, PER_PRESSURE = 2, PER_SHARE = 3   !< Unit of increments: [-], stress, of 1.
 
+   !> Rows by which a constraint, or a quantity, is made of strain or of stress: factors of 11, 22, 33, 12, 13, 23
+   !> (engineering shear), compression positive. Numbers up to 6 are single components.
+   integer, parameter :: AXIAL = 3, SHEAR = 5, ACROSS = 7, VOLUME = 8, MEAN = 9, DEVIATOR = 10
+   real(wp), parameter :: FACTORS(6, 7:10) = reshape([ &
+      1.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &            ! ACROSS: the radial ones are equal
+      1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, &             ! VOLUME
+      1.0_wp/3, 1.0_wp/3, 1.0_wp/3, 0.0_wp, 0.0_wp, 0.0_wp, &       ! MEAN
+      -0.5_wp, -0.5_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], [6, 4])    ! DEVIATOR
+
    type :: quantity_t
       character(16) :: key       !< Key that gives its value at the end.
       character(8) :: name       !< For `cycle_by`.
       integer :: unit            !< PER_*
+      integer :: strain, stress  !< Numbers of the rows that it is made of, 0: none.
    end type quantity_t
 
    type(quantity_t), parameter :: QUANTITIES(*) = [ &
-      quantity_t('eps_a_end', 'eps_a', PER_STRAIN), quantity_t('eps_v_end', 'eps_v', PER_STRAIN), &
-      quantity_t('gamma_end', 'gamma', PER_STRAIN), quantity_t('sigma_a_end', 'sigma_a', PER_PRESSURE), &
-      quantity_t('p_end', 'p', PER_PRESSURE), quantity_t('q_end', 'q', PER_PRESSURE), &
-      quantity_t('tau_end', 'tau', PER_PRESSURE), quantity_t('suction_end', 'suction', PER_PRESSURE), &
-      quantity_t('d_eps', '', PER_STRAIN), quantity_t('d_sigma', '', PER_PRESSURE), &
-      quantity_t('change_1', '', PER_SHARE)]
+      quantity_t('eps_a_end', 'eps_a', PER_STRAIN, AXIAL, 0), quantity_t('eps_v_end', 'eps_v', PER_STRAIN, VOLUME, 0), &
+      quantity_t('gamma_end', 'gamma', PER_STRAIN, SHEAR, 0), &
+      quantity_t('sigma_a_end', 'sigma_a', PER_PRESSURE, 0, AXIAL), quantity_t('p_end', 'p', PER_PRESSURE, 0, MEAN), &
+      quantity_t('q_end', 'q', PER_PRESSURE, 0, DEVIATOR), quantity_t('tau_end', 'tau', PER_PRESSURE, 0, SHEAR), &
+      quantity_t('suction_end', 'suction', PER_PRESSURE, 0, 0), quantity_t('d_eps', '', PER_STRAIN, 6, 0), &
+      quantity_t('d_sigma', '', PER_PRESSURE, 0, 6), quantity_t('change_1', '', PER_SHARE, 0, 0)]
 
-   !> Controls by name.
-   integer, parameter :: DRAINED = 1, UNDRAINED = 2, ISOTROPIC = 3, OEDOMETER = 4, K0 = 5, CONSTANT_P = 6, &
-                         CONSTANT_Q = 7, SHEAR_DRAINED = 8, SHEAR_CONSTANT_VOLUME = 9, CONSTANT_NET_STRESS = 10, &
-                         STRAIN_PATH = 11, STRESS_PATH = 12, LINEAR = 13
-   character(28), parameter :: CONTROL_NAMES(13) = [character(28) :: 'drained', 'undrained', 'isotropic', &
-      'oedometer', 'k0', 'constant_p', 'constant_q', 'simple_shear_drained', 'simple_shear_constant_volume', &
-      'constant_net_stress', 'strain_path', 'stress_path', 'linear']
+   !> A named control.
+   type :: control_t
+      character(28) :: name
+      integer :: leads(3)       !< BY_* of what may lead it, 0: none; where cycles can run, the strain first.
+      integer :: strain(5), stress(5)   !< Rows of the constraints before the one of what leads, 0: none.
+   end type control_t
+
+   integer, parameter :: UNDRAINED = 2, SHEAR_DRAINED = 8, SHEAR_CONSTANT_VOLUME = 9, CONSTANT_NET_STRESS = 10, &
+                         STRAIN_PATH = 11, LINEAR = 13
+   integer, parameter :: NONE(5) = 0, ALL(5) = [1, 2, 3, 4, 5]
+   type(control_t), parameter :: CONTROLS(13) = [ &
+      control_t('drained', [BY_EPS_A, BY_Q, 0], [4, 5, 6, 0, 0], [0, 0, 0, 1, 2]), &
+      control_t('undrained', [BY_EPS_A, BY_Q, 0], [4, 5, 6, ACROSS, VOLUME], NONE), &
+      control_t('isotropic', [BY_EPS_V, BY_P, 0], [4, 5, 6, ACROSS, DEVIATOR], NONE), &
+      control_t('oedometer', [BY_EPS_V, BY_SIGMA_A, BY_P], [4, 5, 6, 1, 2], NONE), &
+      control_t('k0', [BY_EPS_V, BY_SIGMA_A, BY_P], [4, 5, 6, 1, 2], NONE), &
+      control_t('constant_p', [BY_EPS_A, BY_Q, 0], [4, 5, 6, 0, 0], [0, 0, 0, ACROSS, MEAN]), &
+      control_t('constant_q', [BY_P, BY_EPS_V, 0], [4, 5, 6, 0, 0], [0, 0, 0, ACROSS, DEVIATOR]), &
+      control_t('simple_shear_drained', [BY_GAMMA, BY_TAU, 0], [1, 2, 0, 4, 6], [0, 0, AXIAL, 0, 0]), &
+      control_t('simple_shear_constant_volume', [BY_GAMMA, BY_TAU, 0], [1, 2, 3, 4, 6], NONE), &
+      control_t('constant_net_stress', [BY_SUCTION, 0, 0], NONE, ALL), &
+      control_t('strain_path', [BY_D_EPS, 0, 0], ALL, NONE), &
+      control_t('stress_path', [BY_D_SIGMA, 0, 0], NONE, ALL), &
+      control_t('linear', [BY_CHANGES, 0, 0], NONE, NONE)]
+   character(28), parameter :: CONTROL_NAMES(*) = CONTROLS%name
 
    !> One stage of a test.
    type :: test_stage_t
@@ -72,40 +100,13 @@ module triax_stage
       real(wp) :: stop_double_amplitude = 0.0_wp   !< Strain between two reversals that ends it, 0: none.
    end type test_stage_t
 
-   real(wp), parameter :: NOTHING(6) = 0.0_wp
-   real(wp), parameter :: AXIAL_ROW(6) = [0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-   real(wp), parameter :: ACROSS_ROW(6) = [1.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]   !< Radial ones are equal.
-   real(wp), parameter :: VOLUME_ROW(6) = [1.0_wp, 1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-   real(wp), parameter :: DEVIATOR_ROW(6) = [-0.5_wp, -0.5_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]
-   real(wp), parameter :: SHEAR_ROW(6) = [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp]     !< 13: the axis is 3.
 contains
    !> Quantities that may lead a control. BY_*; where cycles can run, the strain first.
    pure function leads_of(control) result(leads)
       integer, intent(in) :: control   !< Place in CONTROL_NAMES.
       integer, allocatable :: leads(:)
 
-      select case (control)
-      case (DRAINED, UNDRAINED)
-         leads = [BY_EPS_A, BY_Q]
-      case (ISOTROPIC)
-         leads = [BY_EPS_V, BY_P]
-      case (OEDOMETER, K0)
-         leads = [BY_EPS_V, BY_SIGMA_A, BY_P]
-      case (CONSTANT_P)
-         leads = [BY_EPS_A, BY_Q]
-      case (CONSTANT_Q)
-         leads = [BY_P, BY_EPS_V]
-      case (SHEAR_DRAINED, SHEAR_CONSTANT_VOLUME)
-         leads = [BY_GAMMA, BY_TAU]
-      case (CONSTANT_NET_STRESS)
-         leads = [BY_SUCTION]
-      case (STRAIN_PATH)
-         leads = [BY_D_EPS]
-      case (STRESS_PATH)
-         leads = [BY_D_SIGMA]
-      case default
-         leads = [BY_CHANGES]
-      end select
+      leads = pack(CONTROLS(control)%leads, CONTROLS(control)%leads > 0)
    end function leads_of
 
    !> 'control=drained|undrained', the controls that one of some quantities may lead: a condition of key_t.
@@ -145,98 +146,36 @@ contains
 
    !> Rows by which a quantity is made of strain and stress.
    pure subroutine quantity_rows(lead, strain_row, stress_row)
-      integer, intent(in) :: lead   !< BY_*; rows of suction and of changes are 0.
+      integer, intent(in) :: lead   !< BY_*; rows of suction and of the changes of `linear` are 0.
       real(wp), intent(out) :: strain_row(6), stress_row(6)   !< Factors of 11, 22, 33, 12, 13, 23.
 
-      strain_row = 0.0_wp
-      stress_row = 0.0_wp
-      select case (lead)
-      case (BY_EPS_A)
-         strain_row = AXIAL_ROW
-      case (BY_EPS_V)
-         strain_row = VOLUME_ROW
-      case (BY_GAMMA)
-         strain_row = SHEAR_ROW
-      case (BY_SIGMA_A)
-         stress_row = AXIAL_ROW
-      case (BY_P)
-         stress_row = VOLUME_ROW/3.0_wp
-      case (BY_Q)
-         stress_row = DEVIATOR_ROW
-      case (BY_TAU)
-         stress_row = SHEAR_ROW
-      end select
+      strain_row = row_of(QUANTITIES(lead)%strain)
+      stress_row = row_of(QUANTITIES(lead)%stress)
    end subroutine quantity_rows
 
-   !> Fills the constraints of a named control; those of `linear`, and given changes, stand already. Factors of 11, 22,
-   !> 33, 12, 13, 23 (engineering shear), compression positive.
+   !> The row of a number, 0: none.
+   pure function row_of(number) result(row)
+      integer, intent(in) :: number
+      real(wp) :: row(6)
+
+      row = 0.0_wp
+      if (number > 6) row = FACTORS(:, number)
+      if (number > 0 .and. number <= 6) row(number) = 1.0_wp
+   end function row_of
+
+   !> Fills the constraints of a named control; those of `linear`, and given changes, stand already.
    subroutine set_constraints(stage, lead)
       type(test_stage_t), intent(inout) :: stage
       integer, intent(in) :: lead   !< BY_*, what leads; for stress cycles the strain that is driven.
       integer :: i
 
       if (stage%control == LINEAR) return
-      stage%strain_rows = 0.0_wp
-      stage%stress_rows = 0.0_wp
-      do i = 1, 6
-         if (any(stage%control == [STRESS_PATH, CONSTANT_NET_STRESS])) then
-            stage%stress_rows(i, i) = 1.0_wp
-         else
-            stage%strain_rows(i, i) = 1.0_wp   ! what no case below frees: no strain
-         end if
+      do i = 1, 5
+         stage%strain_rows(:, i) = row_of(CONTROLS(stage%control)%strain(i))
+         stage%stress_rows(:, i) = row_of(CONTROLS(stage%control)%stress(i))
       end do
       call quantity_rows(lead, stage%strain_rows(:, 6), stage%stress_rows(:, 6))
-      select case (stage%control)
-      case (DRAINED)
-         call no_shear()
-         call constraint(4, NOTHING, [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp])
-         call constraint(5, NOTHING, [0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp])
-      case (UNDRAINED)
-         call no_shear()
-         call constraint(4, ACROSS_ROW, NOTHING)
-         call constraint(5, VOLUME_ROW, NOTHING)
-      case (ISOTROPIC)
-         call no_shear()
-         call constraint(4, ACROSS_ROW, NOTHING)
-         call constraint(5, DEVIATOR_ROW, NOTHING)
-      case (OEDOMETER, K0)
-         call no_shear()
-         call constraint(4, [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], NOTHING)
-         call constraint(5, [0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp], NOTHING)
-      case (CONSTANT_P)
-         call no_shear()
-         call constraint(4, NOTHING, ACROSS_ROW)
-         call constraint(5, NOTHING, VOLUME_ROW/3.0_wp)
-      case (CONSTANT_Q)
-         call no_shear()
-         call constraint(4, NOTHING, ACROSS_ROW)
-         call constraint(5, NOTHING, DEVIATOR_ROW)
-      case (SHEAR_DRAINED, SHEAR_CONSTANT_VOLUME)
-         call constraint(4, [0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp], NOTHING)
-         call constraint(5, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], NOTHING)
-         if (stage%control == SHEAR_DRAINED) call constraint(3, NOTHING, AXIAL_ROW)
-      case (CONSTANT_NET_STRESS, STRESS_PATH)
-         call constraint(6, NOTHING, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
-      case (STRAIN_PATH)
-         call constraint(6, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], NOTHING)
-      end select
-   contains
-      subroutine constraint(place, strain_row, stress_row)
-         integer, intent(in) :: place
-         real(wp), intent(in) :: strain_row(6), stress_row(6)
-
-         stage%strain_rows(:, place) = strain_row
-         stage%stress_rows(:, place) = stress_row
-      end subroutine constraint
-
-      !> Constraints 1 to 3: no shear strain.
-      subroutine no_shear()
-         integer :: j
-
-         stage%strain_rows(:, 1:3) = 0.0_wp
-         do j = 1, 3
-            stage%strain_rows(j + 3, j) = 1.0_wp
-         end do
-      end subroutine no_shear
+      ! suction has no row: the last stress stays too
+      if (stage%control == CONSTANT_NET_STRESS) stage%stress_rows(6, 6) = 1.0_wp
    end subroutine set_constraints
 end module triax_stage

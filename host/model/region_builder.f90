@@ -154,7 +154,7 @@ contains
          if (.not. domain%with_w) region%drainage = COUPLED
          region%with_w = domain%with_w .and. region%drainage /= DRY
          region%with_c = domain%with_c .and. region%drainage /= DRY
-         if (region%void_ratio < 0.0_wp) region%void_ratio = region%law%default_void_ratio()
+         if (region%void_ratio < 0.0_wp) region%void_ratio = region%law%e_0
          if (region%with_w .and. .not. region%void_ratio > 0.0_wp) call raise(fault, EXIT_INPUT, place_of(given)// &
             'the region needs a void_ratio: its pores hold the fluids.')
          if (region%with_w .and. region%drainage == COUPLED .and. fault%code == 0) region%permeability = &

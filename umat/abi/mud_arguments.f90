@@ -9,7 +9,7 @@ module mud_arguments
       S_LAYOUT, S_SUCTION
    use mud_status, only: fail, mud_status_t, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
-   use mud_tensor, only: is_finite
+   use mud_tensor, only: is_finite, within
    use mud_units, only: stress_unit, LARGEST_STRESS
    implicit none (type, external)
    private
@@ -81,8 +81,7 @@ contains
    pure logical function has_past(statev)
       real(wp), intent(in) :: statev(:)
 
-      has_past = is_finite(statev(S_LAYOUT))
-      if (has_past) has_past = abs(statev(S_LAYOUT)) > 0.0_wp
+      has_past = is_finite(statev(S_LAYOUT)) .and. .not. within(statev(S_LAYOUT), 0.0_wp)
    end function has_past
 
    !> DROT as a matrix. None where it is NULL or zero, where the point has no past that could be rotated (hosts without
@@ -297,12 +296,4 @@ contains
 
       is_set = .not. within(value, NOTHING)
    end function is_set
-
-   !> Finite and of magnitude up to a limit. A NaN is not compared: a comparison would trap.
-   pure logical function within(value, limit)
-      real(wp), intent(in) :: value, limit
-
-      within = is_finite(value)
-      if (within) within = abs(value) <= limit
-   end function within
 end module mud_arguments

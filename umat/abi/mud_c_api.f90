@@ -27,8 +27,7 @@ module mud_c_api
    integer, parameter :: ABI_VERSION = 3
    character(*), parameter :: VERSION = '0.2.0'
    integer, parameter :: LIST_PROPS = 1, LIST_STATEV = 2
-   integer, parameter :: FIELD_NAME = 1, FIELD_SYMBOL = 2, FIELD_UNIT = 3, FIELD_ORIGIN = 4, FIELD_MEANING = 5, &
-                         FIELD_INITIAL = 6, FIELD_ROTATION = 7, FIELD_EVOLUTION = 8
+   integer, parameter :: FIELDS = 8, LONGEST = 200   !< Fields of an entry, and letters of one.
    real(wp), parameter :: SMALLEST_FACTOR = 1.0e-12_wp   !< Between two units of stress [-].
 contains
    !> Version of the C interface, MUD_ABI_VERSION of mud.h.
@@ -85,53 +84,24 @@ contains
    integer(c_int) function c_text(list, index, field, text, len) bind(c, name='mud_text')
       integer(c_int), value :: list, index, field, len
       type(c_ptr), value :: text
+      character(LONGEST) :: fields_(FIELDS)   ! MUD_NAME, MUD_SYMBOL, ... of mud.h
 
       c_text = MUD_BAD_OPTION
-      if (index < 0 .or. index >= c_count(list)) return
-      c_text = MUD_OK
+      if (index < 0 .or. index >= c_count(list) .or. field < 1 .or. field > FIELDS) return
+      fields_ = ''
       if (list == LIST_PROPS) then
          associate (entry => PROPERTIES(index + 1))
-            select case (field)
-            case (FIELD_NAME)
-               call put(entry%name, text, len)
-            case (FIELD_SYMBOL)
-               call put(entry%symbol, text, len)
-            case (FIELD_UNIT)
-               call put(entry%unit, text, len)
-            case (FIELD_ORIGIN)
-               call put(entry%origin, text, len)
-            case (FIELD_MEANING)
-               call put(property_meaning(index + 1), text, len)
-            case (FIELD_INITIAL, FIELD_ROTATION, FIELD_EVOLUTION)
-               call put('', text, len)
-            case default
-               c_text = MUD_BAD_OPTION
-            end select
+            fields_(:5) = [character(LONGEST) :: entry%name, entry%symbol, entry%unit, entry%origin, &
+                           property_meaning(index + 1)]
          end associate
       else
          associate (entry => VARIABLES(statev_variable(index + 1)))
-            select case (field)
-            case (FIELD_NAME)
-               call put(statev_name(index + 1), text, len)
-            case (FIELD_SYMBOL)
-               call put(entry%symbol, text, len)
-            case (FIELD_UNIT)
-               call put(entry%unit, text, len)
-            case (FIELD_ORIGIN)
-               call put(entry%origin, text, len)
-            case (FIELD_MEANING)
-               call put(entry%meaning, text, len)
-            case (FIELD_INITIAL)
-               call put(entry%initial, text, len)
-            case (FIELD_ROTATION)
-               call put(merge('DROT', 'no  ', entry%rotates), text, len)
-            case (FIELD_EVOLUTION)
-               call put(entry%evolution, text, len)
-            case default
-               c_text = MUD_BAD_OPTION
-            end select
+            fields_ = [character(LONGEST) :: statev_name(index + 1), entry%symbol, entry%unit, entry%origin, &
+                       entry%meaning, entry%initial, merge('DROT', 'no  ', entry%rotates), entry%evolution]
          end associate
       end if
+      call put(fields_(field), text, len)
+      c_text = MUD_OK
    end function c_text
 
    !> The number-th value, from 0, of a parameter that takes words, and its word. MUD_BAD_OPTION where there is none.

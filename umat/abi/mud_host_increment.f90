@@ -5,9 +5,9 @@ module mud_host_increment
    use mud_kernel, only: report_t, output_t, kernel_point, kernel_tangent, failed_report
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_registry, only: STATE_LAYOUT, S_LAYOUT, S_SATURATION, S_SUCTION
-   use mud_status, only: fail, MUD_OK, MUD_BAD_OPTION, MUD_BAD_STATE, ON_ARGUMENT, ON_STATEV
-   use mud_tensor, only: is_finite
+   use mud_registry, only: S_LAYOUT, S_SATURATION, S_SUCTION
+   use mud_status, only: fail, MUD_OK, MUD_BAD_OPTION, ON_ARGUMENT
+   use mud_tensor, only: is_finite, within
    use mud_total, only: effective_stress, total_stress, total_blocks
    use mud_trace, only: trace_t
    implicit none (type, external)
@@ -42,7 +42,7 @@ contains
    end function is_total
 
    !> The increment of mud_update. Tension positive, engineering shear; stress as the options say and suction in the
-   !> unit of p_atm. MUD_BAD_OPTION, MUD_BAD_STATE for a state that never began, else the codes of kernel_point.
+   !> unit of p_atm. MUD_BAD_OPTION, else the codes of kernel_point.
    pure subroutine host_increment(par, stress, statev, d_strain, suction, options, output, report, trace)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), d_strain(6)
@@ -56,11 +56,6 @@ contains
 
       if (kind_of(options) < 0) then
          report = failed_report(fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(options, wp)))
-         return
-      end if
-      if (never_began(statev)) then
-         report = failed_report(fail(MUD_BAD_STATE, ON_STATEV, S_LAYOUT, statev(S_LAYOUT), real(STATE_LAYOUT, wp), &
-                                     real(STATE_LAYOUT, wp)))
          return
       end if
       change = suction_change(statev(S_SUCTION), suction)
@@ -90,8 +85,7 @@ contains
    pure logical function never_began(statev)
       real(wp), intent(in) :: statev(:)
 
-      never_began = is_finite(statev(S_LAYOUT))
-      if (never_began) never_began = abs(statev(S_LAYOUT)) <= 0.0_wp
+      never_began = within(statev(S_LAYOUT), 0.0_wp)
    end function never_began
 
    !> Change of suction between two values; a value that is not finite passes through, for the kernel to refuse it.

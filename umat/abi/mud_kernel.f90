@@ -11,13 +11,13 @@ module mud_kernel
    use mud_blocks, only: blocks_t
    use mud_start, only: initial_state
    use mud_rates, only: stress_ratio
-   use mud_registry, only: NSTATV, NSTATV_BASE, VARIABLES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
-      S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
+   use mud_registry, only: NSTATV, NSTATV_BASE, VARIABLES, S_LAYOUT, S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, &
+      S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
    use mud_retention, only: check_preset, check_retention, check_saturation
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
-   use mud_tensor, only: is_finite, all_finite, norm, rotate
+   use mud_tensor, only: is_finite, within, all_finite, norm, rotate
    use mud_trace, only: trace_t
    implicit none (type, external)
    private
@@ -61,8 +61,8 @@ module mud_kernel
    end type output_t
 contains
    !> Initialises a point. stress and statev are written on success only. Tension positive, stress and suction in the
-   !> unit of p_atm, void ratio [-]. statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV;
-   !> MUD_BAD_STATE for a saturation without hysteresis; otherwise the codes of initialise.
+   !> unit of p_atm, void ratio [-]. A stress of zero means p_min. statev(:) has the numbers of statev_size, else
+   !> MUD_BAD_NSTATV; otherwise the codes of check_preset, check_retention, initial_state and check_strength.
    pure subroutine kernel_begin(par, stress, suction, void_ratio, statev, report, saturation)
       type(params_t), intent(in) :: par
       real(wp), intent(inout) :: stress(6)
@@ -72,24 +72,30 @@ contains
       real(wp), intent(in) :: saturation   !< 0: on the main drying curve [-].
       type(state_t) :: state
       type(mud_status_t) :: status
-      real(wp) :: packed(NSTATV)
+      real(wp) :: e
+      integer :: n
 
-      if (size(statev) < statev_size(par%options_t)) status = wrong_nstatv(size(statev), par%options_t)
+      n = statev_size(par%options_t)
+      if (size(statev) < n) status = wrong_nstatv(size(statev), par%options_t)
       call check_preset(par%suction%retention_t, saturation, status)
-      if (status%code == MUD_OK) call initialise(par, stress, suction, void_ratio, saturation, state, packed, status)
+      e = void_ratio
+      if (within(e, 0.0_wp)) e = par%e_0
+      if (status%code == MUD_OK) call check_retention(par%suction%retention_t, status)
+      if (status%code == MUD_OK) call initial_state(par, -stress, e, suction, state, status, saturation)
+      if (status%code == MUD_OK) call check_strength(par, state, status)
       report = failed_report(status)
       if (status%code /= MUD_OK) return
       stress = to_umat_stress(state%sigma)
-      statev(1:statev_size(par%options_t)) = packed(1:statev_size(par%options_t))
+      statev(1:n) = 0.0_wp
+      call pack_state(state, par%options_t, counters_t(), statev)
    end subroutine kernel_begin
 
    !> One increment. Tension positive; statev(:) has the numbers of statev_size, else MUD_BAD_NSTATV.
-   !> MUD_BAD_OPTION for an unknown tangent, codes of unpack_state or initial_state and of update_point. On failure
-   !> output is undefined.
+   !> MUD_BAD_OPTION for an unknown tangent, codes of unpack_state and update_point. On failure output is undefined.
    pure subroutine kernel_point(par, stress, statev, d_strain, suction, d_suction, tangent, output, report, trace)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6)       !< sigma' [kPa]
-      real(wp), intent(in), contiguous :: statev(:)   !< Initialised here where layout = 0.
+      real(wp), intent(in), contiguous :: statev(:)   !< STATEV of a point that has begun.
       real(wp), intent(in) :: d_strain(6)     !< Engineering shear [-].
       real(wp), intent(in) :: suction, d_suction   !< [kPa]
       integer, intent(in) :: tangent          !< TANGENT_* of mud_point or TANGENT_FROM_PROPS.
@@ -182,7 +188,7 @@ contains
       report = report_of(status, counters_t(), 0.0_wp)
    end function failed_report
 
-   !> State at the start of an increment, from an initialised STATEV or from nothing.
+   !> State at the start of an increment.
    pure subroutine read_state(par, stress, statev, suction, state, packed, status)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: stress(6), suction
@@ -199,15 +205,11 @@ contains
          status = fail(MUD_BAD_STATE, ON_STATEV, S_LAYOUT, statev(S_LAYOUT), 0.0_wp, 1.0_wp)
          return
       end if
-      if (abs(statev(S_LAYOUT)) <= 0.0_wp) then
-         call initialise(par, stress, suction, statev(S_VOID_RATIO), statev(S_SATURATION), state, packed, status)
-      else
-         call unpack_state(statev, par%options_t, state, status)
-         call check_saturation(par%suction%retention_t, state%p_c, state%e, state%s_w, status)
-         call keep_totals(statev_size(par%options_t), statev, packed)
-         state%sigma = -stress
-         state%p_c = suction
-      end if
+      call unpack_state(statev, par%options_t, state, status)
+      call check_saturation(par%suction%retention_t, state%p_c, state%e, state%s_w, status)
+      call keep_totals(statev_size(par%options_t), statev, packed)
+      state%sigma = -stress
+      state%p_c = suction
    end subroutine read_state
 
    !> Copies the entries of STATEV that pack_state does not write: totals of the counters, and numbers of options that
@@ -231,29 +233,6 @@ contains
       to(1:NSTATV_BASE) = from(1:NSTATV_BASE)
       if (n > NSTATV_BASE) to(S_TURNS:n) = from(S_TURNS:n)
    end subroutine copy_statev
-
-   !> A state without a past; a void ratio of zero means that of the parameters, stress zero means p_min. Codes of
-   !> check_retention, initial_state and check_strength.
-   pure subroutine initialise(par, stress, suction, void_ratio, s_w, state, packed, status)
-      type(params_t), intent(in) :: par
-      real(wp), intent(in) :: stress(6), suction, void_ratio
-      real(wp), intent(in) :: s_w   !< Read with hysteresis; 0: on the main drying curve.
-      type(state_t), intent(inout) :: state
-      real(wp), intent(out) :: packed(NSTATV)
-      type(mud_status_t), intent(out) :: status
-      real(wp) :: e
-
-      e = void_ratio
-      if (is_finite(e)) then
-         if (abs(e) <= 0.0_wp) e = par%e_0
-      end if
-      packed = 0.0_wp
-      call check_retention(par%suction%retention_t, status)
-      if (status%code /= MUD_OK) return
-      call initial_state(par, -stress, e, suction, state, status, s_w)
-      if (status%code == MUD_OK) call check_strength(par, state, status)
-      if (status%code == MUD_OK) call pack_state(state, par%options_t, counters_t(), packed)
-   end subroutine initialise
 
    !> A start far beyond the bounding surface, which no loading reaches: MUD_BAD_INPUT with q/p' and the largest that is
    !> taken in its direction. docs/theory/material.md section 1.4.

@@ -2,65 +2,66 @@
 !> Sentences for status codes: what, where, value, allowed range, remedy.
 module mud_messages
    use mud_kinds, only: wp
-   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, KIND_REAL, S_LAYOUT, property_meaning, statev_name
+   use mud_registry, only: NPROPS, NSTATV, PROPERTIES, KIND_REAL, COMPONENTS, S_LAYOUT, property_meaning, statev_name
    use mud_status, only: MUD_OK, MUD_BAD_NPROPS, MUD_BAD_NSTATV, MUD_BAD_NTENS, MUD_BAD_PROPS, MUD_BAD_STATE, &
       MUD_BAD_INPUT, MUD_NULL_ARGUMENT, MUD_BAD_VOID_RATIO, MUD_BAD_OPTION, MUD_MINIMUM_STEP, MUD_TOO_MANY_SUBSTEPS, &
       MUD_NO_DIRECTION, MUD_VOID_RATIO_LIMIT, MUD_NOT_FINITE, MUD_INCREMENT_TOO_LARGE, MUD_NOT_WRITTEN, &
       MUD_NOT_PREPARED, ON_PROPS, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ROTATION
    use mud_kernel, only: report_t, ON_STRESS_RATIO
-   use mud_tensor, only: is_finite
+   use mud_tensor, only: is_finite, within
    implicit none (type, external)
    private
    public :: status_text, report_text, failure_name, number, MESSAGE_LENGTH
 
    integer, parameter :: MESSAGE_LENGTH = 320
-   character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
+
+   !> Every code: its name in that of a file, and a sentence that says what it means and what to do.
+   type :: code_t
+      integer :: code
+      character(20) :: name
+      character(112) :: text
+   end type code_t
+   type(code_t), parameter :: CODES(*) = [ &
+      code_t(MUD_OK, 'ok', 'no error'), &
+      code_t(MUD_BAD_NPROPS, 'bad_nprops', &
+         'wrong number of PROPS: give every entry; mud_count returns how many there are'), &
+      code_t(MUD_BAD_NSTATV, 'bad_nstatv', &
+         'too few STATEV: reserve at least mud_count(MUD_STATEV) per point (Abaqus: *Depvar)'), &
+      code_t(MUD_BAD_NTENS, 'bad_ntens', &
+         'NTENS must be 6 (solid) or 4 (plane strain, axisymmetric) with three direct components'), &
+      code_t(MUD_BAD_PROPS, 'bad_props', 'a material parameter is not finite or out of its range'), &
+      code_t(MUD_BAD_STATE, 'bad_state', &
+         'a state variable is not finite or impossible: was STATEV zeroed before the first call and kept since?'), &
+      code_t(MUD_BAD_INPUT, 'bad_input', &
+         'stress, strain, suction or DROT is not finite, too large or no rotation: check what the host passes'), &
+      code_t(MUD_NULL_ARGUMENT, 'null_argument', 'a required pointer is NULL'), &
+      code_t(MUD_BAD_VOID_RATIO, 'bad_void_ratio', &
+         'the initial void ratio is out of its range: correct e_0 of PROPS or the preset in STATEV'), &
+      code_t(MUD_BAD_OPTION, 'bad_option', 'unknown list, field, index or kind of tangent'), &
+      code_t(MUD_NOT_WRITTEN, 'not_written', &
+         'the file could not be written: choose a new name in a folder that exists, on a disk with room'), &
+      code_t(MUD_NOT_PREPARED, 'not_prepared', &
+         'no prepared material: call mud_prepare of this library on mud_prepared_size() doubles'), &
+      code_t(MUD_MINIMUM_STEP, 'minimum_step', &
+         'the substep fell to its minimum: cut the increment, or loosen the tolerance'), &
+      code_t(MUD_TOO_MANY_SUBSTEPS, 'too_many_substeps', &
+         'too many substeps: cut the increment, or raise max_substeps'), &
+      code_t(MUD_NO_DIRECTION, 'no_direction', &
+         'no admissible loading direction: cut the increment, or switch the guards x_0, cap_d, cap_h on'), &
+      code_t(MUD_VOID_RATIO_LIMIT, 'void_ratio_limit', &
+         'the increment would drive the void ratio out of its range: cut it, or correct the strain'), &
+      code_t(MUD_NOT_FINITE, 'not_finite', 'the result is not finite: cut the increment'), &
+      code_t(MUD_INCREMENT_TOO_LARGE, 'increment_too_large', 'the increment is too large: cut it')]
 contains
    !> Sentence that says what a code means and what to do. An unknown code has a sentence too.
    pure function status_text(code) result(text)
       integer, intent(in) :: code
       character(MESSAGE_LENGTH) :: text
+      integer :: place
 
-      select case (code)
-      case (MUD_OK)
-         text = 'no error'
-      case (MUD_BAD_NPROPS)
-         text = 'wrong number of PROPS: give every entry; mud_count returns how many there are'
-      case (MUD_BAD_NSTATV)
-         text = 'too few STATEV: reserve at least mud_count(MUD_STATEV) per point (Abaqus: *Depvar)'
-      case (MUD_BAD_NTENS)
-         text = 'NTENS must be 6 (solid) or 4 (plane strain, axisymmetric) with three direct components'
-      case (MUD_BAD_PROPS)
-         text = 'a material parameter is not finite or out of its range'
-      case (MUD_BAD_STATE)
-         text = 'a state variable is not finite or impossible: was STATEV zeroed before the first call and kept since?'
-      case (MUD_BAD_INPUT)
-         text = 'stress, strain, suction or DROT is not finite, too large or no rotation: check what the host passes'
-      case (MUD_NULL_ARGUMENT)
-         text = 'a required pointer is NULL'
-      case (MUD_BAD_VOID_RATIO)
-         text = 'the initial void ratio is out of its range: correct e_0 of PROPS or the preset in STATEV'
-      case (MUD_BAD_OPTION)
-         text = 'unknown list, field, index or kind of tangent'
-      case (MUD_NOT_WRITTEN)
-         text = 'the file could not be written: choose a new name in a folder that exists, on a disk with room'
-      case (MUD_NOT_PREPARED)
-         text = 'no prepared material: call mud_prepare of this library on mud_prepared_size() doubles'
-      case (MUD_MINIMUM_STEP)
-         text = 'the substep fell to its minimum: cut the increment, or loosen the tolerance'
-      case (MUD_TOO_MANY_SUBSTEPS)
-         text = 'too many substeps: cut the increment, or raise max_substeps'
-      case (MUD_NO_DIRECTION)
-         text = 'no admissible loading direction: cut the increment, or switch the guards x_0, cap_d, cap_h on'
-      case (MUD_VOID_RATIO_LIMIT)
-         text = 'the increment would drive the void ratio out of its range: cut it, or correct the strain'
-      case (MUD_NOT_FINITE)
-         text = 'the result is not finite: cut the increment'
-      case (MUD_INCREMENT_TOO_LARGE)
-         text = 'the increment is too large: cut it'
-      case default
-         text = 'unknown status code'
-      end select
+      place = findloc(CODES%code, code, dim=1)
+      text = 'unknown status code'
+      if (place > 0) text = CODES(place)%text
    end function status_text
 
    !> Sentence of the code of a report, with the place, the value and the allowed range. Values in the unit that the
@@ -90,7 +91,7 @@ contains
             return
          end if
          text = trim(text)//trim(span(lower, upper))//': '
-         if (report%index == S_LAYOUT .and. is_zero(report%value)) then
+         if (report%index == S_LAYOUT .and. within(report%value, 0.0_wp)) then
             text = trim(text)//' mud_init or mud_init_points begins a point'
          else
             text = trim(text)//' was STATEV zeroed before the first call and kept since?'
@@ -149,35 +150,11 @@ contains
    pure function failure_name(report) result(name)
       type(report_t), intent(in) :: report
       character(60) :: name
+      integer :: place
 
-      select case (report%status)
-      case (MUD_BAD_NPROPS)
-         name = 'bad_nprops'
-      case (MUD_BAD_NSTATV)
-         name = 'bad_nstatv'
-      case (MUD_BAD_PROPS)
-         name = 'bad_props'
-      case (MUD_BAD_STATE)
-         name = 'bad_state'
-      case (MUD_BAD_INPUT)
-         name = 'bad_input'
-      case (MUD_BAD_VOID_RATIO)
-         name = 'bad_void_ratio'
-      case (MUD_MINIMUM_STEP)
-         name = 'minimum_step'
-      case (MUD_TOO_MANY_SUBSTEPS)
-         name = 'too_many_substeps'
-      case (MUD_NO_DIRECTION)
-         name = 'no_direction'
-      case (MUD_VOID_RATIO_LIMIT)
-         name = 'void_ratio_limit'
-      case (MUD_NOT_FINITE)
-         name = 'not_finite'
-      case (MUD_INCREMENT_TOO_LARGE)
-         name = 'increment_too_large'
-      case default
-         name = 'status_'//whole(report%status)
-      end select
+      place = findloc(CODES%code, report%status, dim=1)
+      name = 'status_'//whole(report%status)
+      if (place > 0) name = CODES(place)%name
       select case (report%subject)
       case (ON_PROPS)
          if (report%index >= 1 .and. report%index <= NPROPS) name = trim(name)//'_'//PROPERTIES(report%index)%name
@@ -197,7 +174,7 @@ contains
       character(3) :: suffix
 
       suffix = ''
-      if (index >= 1 .and. index <= 6) suffix = '_'//COMPONENT(index)
+      if (index >= 1 .and. index <= 6) suffix = '_'//COMPONENTS(index)
    end function component_suffix
 
    !> Default of a parameter in the unit of the bounds that the report carries.
@@ -223,7 +200,7 @@ contains
       case default
          text = 'suction or its increment'
       end select
-      if (report%index >= 1 .and. report%index <= 6) text = trim(text)//' '//COMPONENT(report%index)
+      if (report%index >= 1 .and. report%index <= 6) text = trim(text)//' '//COMPONENTS(report%index)
    end function quantity
 
    !> True of a count that is refused because it is not whole. A NaN is not compared, for it would trap.
@@ -233,14 +210,6 @@ contains
       within_range = is_finite(report%value)
       if (within_range) within_range = report%value > report%lower .and. report%value < report%upper
    end function within_range
-
-   !> A NaN is not compared, for it would trap.
-   pure logical function is_zero(value)
-      real(wp), intent(in) :: value
-
-      is_zero = is_finite(value)
-      if (is_zero) is_zero = abs(value) <= 0.0_wp
-   end function is_zero
 
    !> Texts of fixed length: gfortran keeps the length of deferred-length results in static storage, which threads
    !> share.

@@ -9,10 +9,9 @@ module mud_one_point
    use mud_messages, only: report_text
    use mud_pieces, only: update_in_pieces
    use mud_prepared, only: prepared_t, find_prepared
-   use mud_refusals, only: place_t, place_at, remark_on_begun, remark_on_end, remark_on_props, remark_on_void_ratio, &
+   use mud_refusals, only: place_t, place_at, begin_at, remark_on_begun, remark_on_end, remark_on_void_ratio, &
       save_if_asked
-   use mud_registry, only: NSTATV, S_SATURATION, S_SUCTION, S_VOID_RATIO
-   use mud_retention, only: read_preset
+   use mud_registry, only: NSTATV, S_SATURATION, S_SUCTION
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
       ON_STATEV
@@ -160,10 +159,7 @@ contains
       from = statev(S_SUCTION)
       if (never_began(statev)) then
          from = suction0
-         call kernel_begin(start%material%par, stress, from, start%statev(S_VOID_RATIO), statev, report, &
-                           read_preset(start%material%par%suction%retention_t, statev(S_SATURATION)))
-         if (report%status == MUD_OK) call remark_on_begun(start%material%par, start%stress, statev, place)
-         if (report%status == MUD_OK) call remark_on_props(start%material%props, place)
+         call begin_at(start%material%par, start%material%props, stress, from, statev, place, report)
       end if
       change = suction_change(from, suction)
       if (.not. goes_on) then

@@ -8,13 +8,13 @@ module mud_refusals
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_advice, only: advice_on, doubts_on_start, advice_on_start, is_too_loose, advice_on_void_ratio, &
       ADVICE_LENGTH, START_DOUBTS, TOO_LOOSE
-   use mud_arguments, only: suction_t, has_past, integer_at, SUCTION_CONTRADICTS, ARGUMENT_NAMES
+   use mud_arguments, only: suction_t, integer_at, SUCTION_CONTRADICTS, ARGUMENT_NAMES
    use mud_kernel, only: report_t, kernel_begin
    use mud_kinds, only: wp
    use mud_messages, only: report_text, failure_name, number, MESSAGE_LENGTH
    use mud_once, only: first_time, write_message, report_at_exit, environment_is
    use mud_params, only: params_t
-   use mud_registry, only: NPROPS, NSTATV, P_TANGENT, S_VOID_RATIO, S_SATURATION
+   use mud_registry, only: NPROPS, P_TANGENT, S_VOID_RATIO, S_SATURATION
    use mud_retention, only: read_preset
    use mud_save, only: write_increment, PATH_LENGTH
    use mud_status, only: MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_WRITTEN
@@ -22,9 +22,8 @@ module mud_refusals
    use mud_to_host, only: get
    implicit none (type, external)
    private
-   public :: place_t, place_at, c_refuse, refuse, remark_on_suction, remark_on_props, remark_on_start, &
-             remark_on_begun, remark_on_end, remark_on_void_ratio, remark_on_late_start, remark_on_rotation, &
-             remark_on_green_strain, save_if_asked
+   public :: place_t, place_at, c_refuse, refuse, begin_at, remark_on_suction, remark_on_begun, remark_on_end, &
+             remark_on_void_ratio, remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
 
    integer, parameter :: DOOR_LENGTH = 23
 
@@ -258,21 +257,23 @@ contains
       if (first_time(ON_PROPS_UNITS)) call remark(advice, place)
    end subroutine remark_on_props
 
-   !> Says what is doubtful about a point that an update is about to begin; nothing about one that has begun, or cannot.
-   !> Arguments and units as in kernel_point.
-   subroutine remark_on_start(par, stress, statev, suction, place)
+   !> Begins a point without a past, and says what is doubtful about it and about PROPS. Arguments, units and codes as
+   !> in kernel_begin; STATEV presets the void ratio and, with hysteresis, the saturation.
+   subroutine begin_at(par, props, stress, suction, statev, place, report)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: stress(6), statev(:), suction
+      real(wp), intent(in) :: props(NPROPS), suction
+      real(wp), intent(inout) :: stress(6), statev(:)
       type(place_t), intent(in) :: place
-      type(report_t) :: report
-      real(wp) :: begun(6), filled(NSTATV)
+      type(report_t), intent(out) :: report
+      real(wp) :: given(6)
 
-      if (has_past(statev)) return
-      begun = stress
-      call kernel_begin(par, begun, suction, statev(S_VOID_RATIO), filled(:size(statev)), report, &
+      given = stress
+      call kernel_begin(par, stress, suction, (statev(S_VOID_RATIO)), statev, report, &
                         read_preset(par%suction%retention_t, statev(S_SATURATION)))
-      if (report%status == MUD_OK) call remark_on_begun(par, stress, filled, place)
-   end subroutine remark_on_start
+      if (report%status /= MUD_OK) return
+      call remark_on_begun(par, given, statev, place)
+      call remark_on_props(props, place)
+   end subroutine begin_at
 
    !> Says once a process what is doubtful about a point that began: arguments of doubts_on_start.
    subroutine remark_on_begun(par, stress, statev, place)

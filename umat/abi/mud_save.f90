@@ -6,17 +6,14 @@ module mud_save
       c_f_pointer
    use mud_c_api, only: VERSION
    use mud_host_increment, only: host_increment, suction_change
-   use mud_kernel, only: report_t, output_t, kernel_begin
+   use mud_kernel, only: report_t, output_t
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
-   use mud_params, only: options_of, params_t, read_params
+   use mud_params, only: options_of
    use mud_prepared, only: prepared_t, find_prepared
-   use mud_registry, only: NPROPS, NSTATV, P_TANGENT, PROPERTIES, S_LAYOUT, S_VOID_RATIO, S_SATURATION, &
-      S_SUCTION, statev_name
-   use mud_retention, only: read_preset
+   use mud_registry, only: NPROPS, P_TANGENT, PROPERTIES, COMPONENTS, S_SUCTION, statev_name
    use mud_state, only: statev_size
    use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
-   use mud_tensor, only: is_finite
    use mud_to_host, only: put, get
    implicit none (type, external)
    private
@@ -24,7 +21,6 @@ module mud_save
 
    integer, parameter :: PATH_LENGTH = 1024, ORIGIN_LENGTH = 200, PROBLEM_LENGTH = 300
    integer, parameter :: LAST_TANGENT = 3
-   character(2), parameter :: COMPONENT(6) = ['11', '22', '33', '12', '13', '23']
 
    ! C's streams: gfortran's own do not report a full disk, and leave the unit behind when it is.
    interface
@@ -107,7 +103,6 @@ contains
       type(report_t), intent(in) :: report
       character(*), intent(out) :: problem   !< Blank if the file is written.
       type(c_ptr) :: file
-      real(wp) :: start(6), state(NSTATV)
       character(80) :: digits
       logical :: good, taken
       integer :: i, n
@@ -122,10 +117,7 @@ contains
          return
       end if
       problem = ''
-      start = stress
       n = min(size(statev), statev_size(options_of(props)))
-      state(:n) = statev(:n)
-      call begin_as_umat(props, suction, start, state(:n))
       call line('! An increment of MUD, for mud_triax: compression positive, engineering shear, stresses in the '// &
                 'unit of p_atm.')
       call line('! Library '//VERSION//'. '//report_text(report))
@@ -147,11 +139,11 @@ contains
       call line('   suction = '//bits(suction))
       call line('   stress =')
       do i = 1, 6
-         call line('      '//trim(bits(-start(i)))//'   ! '//COMPONENT(i))
+         call line('      '//trim(bits(-stress(i)))//'   ! '//COMPONENTS(i))
       end do
       call line('   state_variables =')
       do i = 1, n
-         call line('      '//trim(bits(state(i)))//'   ! '//trim(statev_name(i)))
+         call line('      '//trim(bits(statev(i)))//'   ! '//trim(statev_name(i)))
       end do
       call line('/')
       call line('&stage')
@@ -161,7 +153,7 @@ contains
          digits = repeat('0 ', 6)
          digits(2*i - 1:2*i - 1) = '1'
          call line('   strain_'//achar(iachar('0') + i)//' = '//trim(digits))
-         call line('   change_'//achar(iachar('0') + i)//' = '//trim(bits(-d_strain(i)))//'   ! '//COMPONENT(i))
+         call line('   change_'//achar(iachar('0') + i)//' = '//trim(bits(-d_strain(i)))//'   ! '//COMPONENTS(i))
       end do
       call line('   d_suction = '//bits(d_suction))
       call line('/')
@@ -180,24 +172,6 @@ contains
          good = c_fwrite(trim(text)//new_line(text), 1_c_size_t, n, file) == n
       end subroutine line
    end subroutine write_increment
-
-   !> The state of a point that umat_ begins in this increment; a start that is refused stays as it is.
-   subroutine begin_as_umat(props, suction, stress, statev)
-      real(wp), intent(in), contiguous :: props(:)
-      real(wp), intent(in) :: suction
-      real(wp), intent(inout) :: stress(6), statev(:)
-      type(params_t) :: par
-      type(mud_status_t) :: status
-      type(report_t) :: report
-      real(wp) :: preset
-
-      if (.not. is_finite(statev(S_LAYOUT))) return
-      if (abs(statev(S_LAYOUT)) > 0.0_wp) return
-      call read_params(props, par, status)
-      if (status%code /= MUD_OK) return
-      preset = read_preset(par%suction%retention_t, statev(S_SATURATION))
-      call kernel_begin(par, stress, suction, (statev(S_VOID_RATIO)), statev, report, preset)
-   end subroutine begin_as_umat
 
    !> Seventeen digits: the same bits when they are read again. A minus zero loses its sign. At fixed length: gfortran
    !> keeps the length of an allocatable result between calls.

@@ -4,9 +4,10 @@ module mud_umat
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer
    use mud_arguments, only: check_arguments, has_past, rotates, read_rotation, turns_unread, begins_late, &
       is_green_strain, suction_t, read_suction, component_order, integer_at, SUCTION_AS_GIVEN
+   use mud_host_increment, only: never_began
    use mud_kernel, only: report_t, output_t, kernel_point, rotate_statev, failed_report, TANGENT_FROM_PROPS
    use mud_kinds, only: wp
-   use mud_refusals, only: place_t, refuse, remark_on_suction, remark_on_props, remark_on_start, remark_on_end, &
+   use mud_refusals, only: place_t, refuse, begin_at, remark_on_suction, remark_on_end, &
       remark_on_late_start, remark_on_rotation, remark_on_green_strain, save_if_asked
    use mud_params, only: params_t, read_params, options_of, completed, is_length
    use mud_registry, only: NSTATV, NSTATV_BASE, S_SUCTION
@@ -53,12 +54,14 @@ contains
          call read_call(stress, statev, dstran, integer_at(ntens), integer_at(nstatv_), props, integer_at(nprops), &
                         predef, dpred, drot, pnewdt, place, given, status)
       end if
-      if (status%code == MUD_OK) then
+      report = failed_report(status)
+      if (report%status == MUD_OK) then
+         if (never_began(given%statev)) call begin_at(given%par, completed(given%props), given%stress, &
+                                                      given%suction%start, given%statev(:given%n), place, report)
+      end if
+      if (report%status == MUD_OK) &
          call kernel_point(given%par, given%stress, given%statev(:given%n), given%dstran, given%suction%start, &
                            given%suction%change, TANGENT_FROM_PROPS, output, report)
-      else
-         report = failed_report(status)
-      end if
       if (report%status == MUD_OK) then
          call give_results(given, output, stress, statev, ddsdde, place)
       else
@@ -122,7 +125,6 @@ contains
          if (given%suction%reading /= SUCTION_AS_GIVEN) call remark_on_suction(given%suction, place)
          given%is_read = .true.
          call read_params(given%props, given%par, status)
-         if (status%code == MUD_OK) call remark_on_start(given%par, given%stress, state, given%suction%start, place)
       end associate
    end subroutine read_call
 
@@ -136,7 +138,6 @@ contains
 
       call c_f_pointer(stress, stress_out, [given%ntens])
       call c_f_pointer(statev, statev_out, [output%n_statev])
-      if (.not. has_past(given%statev(:given%n))) call remark_on_props(completed(given%props), place)
       call remark_on_end(output%stress, output%statev, place)
       output%stress = output%stress(given%order)
       stress_out = output%stress(1:given%ntens)

@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
-!> The generic interface of MFront, API version 1: the functions that MGIS looks up as BEHAVIOUR_HYPOTHESIS. Their
-!> description (names, types, counts) is written by umat/tables/mud_write_tables.f90. Sign and order of components are
-!> those of MUD; symmetric tensors are in Mandel's notation (shear times square root of 2), matrices row by row.
+!> The generic interface of MFront, API version 1. The functions that MGIS looks up as BEHAVIOUR_HYPOTHESIS, which call
+!> `integrate`, and their description (names, types, counts) are written by umat/tables/mud_write_tables.f90. Sign and
+!> order of components are those of MUD; symmetric tensors are in Mandel's notation (shear times square root of 2),
+!> matrices row by row.
 module mud_mfront
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
@@ -12,8 +13,7 @@ module mud_mfront
       MUD_TANGENT_CONSISTENT, MUD_TANGENT_PRESENT
    implicit none (type, external)
    private
-   public :: mechanical_3d, mechanical_plane, mechanical_axial, mechanical_generalised, mechanical_1d, unsaturated_3d, &
-             unsaturated_plane, unsaturated_axial, unsaturated_generalised, unsaturated_1d
+   public :: integrate
 
    integer, parameter :: wp = c_double
    integer(c_int), parameter :: FAILED = -1, RELIABLE = 1     !< Outcomes that MGIS understands.
@@ -45,97 +45,25 @@ module mud_mfront
                                              state1(:), k(:)
    end type point_t
 contains
-   !> Effective stress, 3D: one answer to K(1), strain to stress in Mandel's notation, stress in the unit of p_atm.
-   !> Returns 1, or -1 with the message and the factor on the time step alone written.
-   integer(c_int) function mechanical_3d(view) bind(c, name='MUD_Tridimensional')
+   !> Does what the host asks for in K(1): below -0.5 a tangent of the present state alone, otherwise an update. Stress
+   !> in the unit of p_atm, in Mandel's notation: effective, or total (air pressure 0, docs/theory/material.md section
+   !> 1.1) beside S_w [-]. Returns 1, or -1: then only the message and the factor on the time step are written.
+   integer(c_int) function integrate(view, n, unsaturated) result(outcome) bind(c, name='mud_behaviour')
       type(view_t), intent(inout) :: view
-
-      mechanical_3d = integrate(view, 6, .false.)
-   end function mechanical_3d
-
-   !> Integrates a point in plane strain as mechanical_3d does: four components 11, 22, 33, 12.
-   integer(c_int) function mechanical_plane(view) bind(c, name='MUD_PlaneStrain')
-      type(view_t), intent(inout) :: view
-
-      mechanical_plane = integrate(view, 4, .false.)
-   end function mechanical_plane
-
-   !> Integrates a point in axial symmetry as mechanical_3d does: four components.
-   integer(c_int) function mechanical_axial(view) bind(c, name='MUD_Axisymmetrical')
-      type(view_t), intent(inout) :: view
-
-      mechanical_axial = integrate(view, 4, .false.)
-   end function mechanical_axial
-
-   !> Integrates a point in generalised plane strain as mechanical_3d does: four components.
-   integer(c_int) function mechanical_generalised(view) bind(c, name='MUD_GeneralisedPlaneStrain')
-      type(view_t), intent(inout) :: view
-
-      mechanical_generalised = integrate(view, 4, .false.)
-   end function mechanical_generalised
-
-   !> Integrates a point in axial symmetry in one dimension as mechanical_3d does: three direct components.
-   integer(c_int) function mechanical_1d(view) bind(c, name='MUD_AxisymmetricalGeneralisedPlaneStrain')
-      type(view_t), intent(inout) :: view
-
-      mechanical_1d = integrate(view, 3, .false.)
-   end function mechanical_1d
-
-   !> Total stress (air pressure 0, unit of p_atm) and S_w [-] from strain and suction, 3D; returns as mechanical_3d.
-   !> Stress by docs/theory/material.md section 1.1.
-   integer(c_int) function unsaturated_3d(view) bind(c, name='MUD_StressSaturation_Tridimensional')
-      type(view_t), intent(inout) :: view
-
-      unsaturated_3d = integrate(view, 6, .true.)
-   end function unsaturated_3d
-
-   !> Integrates a point in plane strain as unsaturated_3d does: four components 11, 22, 33, 12.
-   integer(c_int) function unsaturated_plane(view) bind(c, name='MUD_StressSaturation_PlaneStrain')
-      type(view_t), intent(inout) :: view
-
-      unsaturated_plane = integrate(view, 4, .true.)
-   end function unsaturated_plane
-
-   !> Integrates a point in axial symmetry as unsaturated_3d does: four components.
-   integer(c_int) function unsaturated_axial(view) bind(c, name='MUD_StressSaturation_Axisymmetrical')
-      type(view_t), intent(inout) :: view
-
-      unsaturated_axial = integrate(view, 4, .true.)
-   end function unsaturated_axial
-
-   !> Integrates a point in generalised plane strain as unsaturated_3d does: four components.
-   integer(c_int) function unsaturated_generalised(view) bind(c, name='MUD_StressSaturation_GeneralisedPlaneStrain')
-      type(view_t), intent(inout) :: view
-
-      unsaturated_generalised = integrate(view, 4, .true.)
-   end function unsaturated_generalised
-
-   !> Integrates a point in axial symmetry in one dimension as unsaturated_3d does: three direct components.
-   integer(c_int) function unsaturated_1d(view) bind(c, name= &
-                                                     'MUD_StressSaturation_AxisymmetricalGeneralisedPlaneStrain')
-      type(view_t), intent(inout) :: view
-
-      unsaturated_1d = integrate(view, 3, .true.)
-   end function unsaturated_1d
-
-   !> Does what the host asks for in K(1): below -0.5 a tangent of the present state alone, otherwise an update. On
-   !> failure the message and the time-step factor are written and nothing else.
-   integer(c_int) function integrate(view, n, unsaturated) result(outcome)
-      type(view_t), intent(inout) :: view
-      integer, intent(in) :: n              !< Components of a tensor: 6, 4 or 3.
-      logical, intent(in) :: unsaturated
+      integer(c_int), value :: n             !< Components of a tensor: 6, 4 (11, 22, 33, 12) or 3.
+      integer(c_int), value :: unsaturated   !< 0: effective stress.
       type(point_t) :: point
       type(mud_report) :: report
       real(c_double) :: material(mud_prepared_size())
       real(c_double), pointer :: factor
       integer(c_int) :: code
 
-      call find_arrays(view, merge(n + 1, n, unsaturated), point, report)
+      call find_arrays(view, merge(n + 1, n, unsaturated /= 0), point, report)
       if (report%status == MUD_OK) call prepare(point%props, material, report)
       if (report%status == MUD_OK) then
          call c_f_pointer(view%s0%internal_state_variables, point%state0, [mud_prepared_statev(material)])
          call c_f_pointer(view%s1%internal_state_variables, point%state1, [mud_prepared_statev(material)])
-         call answer(view, material, n, unsaturated, point, report)
+         call answer(view, material, n, unsaturated /= 0, point, report)
       end if
       outcome = RELIABLE
       if (report%status == MUD_OK) return

@@ -12,6 +12,7 @@ program mud_write_tables
    character(*), parameter :: PREFIX = 'mud_'
    character(*), parameter :: HYPOTHESES(5) = [character(36) :: 'Tridimensional', 'PlaneStrain', 'Axisymmetrical', &
       'GeneralisedPlaneStrain', 'AxisymmetricalGeneralisedPlaneStrain']
+   integer, parameter :: COMPONENTS(size(HYPOTHESES)) = [6, 4, 4, 4, 3]   !< Numbers of a tensor.
    !> Numbers of MGIS for the types of a variable.
    integer, parameter :: SCALAR = 0, SYMMETRIC_TENSOR = 1
    integer, parameter :: GENERAL_BEHAVIOUR = 0, STRAIN_BASED_BEHAVIOUR = 1, NO_KINEMATIC = 0, SMALL_STRAIN = 1
@@ -26,7 +27,7 @@ program mud_write_tables
       units(i) = VARIABLES(statev_variable(i))%unit
    end do
    write (output_unit, '(a)') '/* Written by mud_write_tables from the registry of the library: change it there. */', &
-      '#include "mud.h"'
+      '#include "mud.h"', 'extern int mud_behaviour(void *view, int components, int unsaturated);'
    call numbers('const int mud_props_count', [NPROPS], .false.)
    call numbers('const int mud_statev_count', [NSTATV], .false.)
    call texts('mud_props_names', props)
@@ -43,7 +44,7 @@ program mud_write_tables
                   [character(LONG) :: 'Stress', 'Strain', 'Stress', 'LiquidPressure', 'Saturation', 'Strain', &
                    'Saturation', 'LiquidPressure'])
 contains
-   !> Everything but the functions, which mud_mfront.f90 holds, of one behaviour.
+   !> One behaviour: what describes it, and a function a hypothesis, which calls that of mud_mfront.f90.
    subroutine behaviour(name, description, kind, kinematic, gradients, forces, types, blocks)
       character(*), intent(in) :: name, description, gradients(:), forces(:), blocks(:)
       integer, intent(in) :: kind, kinematic, types(:)   !< Types of the gradients, and of the forces.
@@ -89,6 +90,10 @@ contains
       call numbers('const int '//name//'_ParametersTypes', no, .true.)
       call list(name//'_', 'InitializeFunctions', none)
       call list(name//'_', 'PostProcessings', none)
+      do k = 1, size(HYPOTHESES)
+         write (output_unit, '(5a, 2(i0, a))') 'int ', name, '_', trim(HYPOTHESES(k)), &
+            '(void *view) { return mud_behaviour(view, ', COMPONENTS(k), ', ', size(gradients) - 1, '); }'
+      end do
    end subroutine behaviour
 
    !> A list and how long it is.

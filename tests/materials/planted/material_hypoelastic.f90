@@ -22,9 +22,6 @@ module material_hypoelastic
       procedure :: initial_state
       procedure :: update
       procedure :: message
-      procedure :: default_void_ratio
-      procedure :: void_ratio
-      procedure :: saturation
    end type hypoelastic_t
 contains
    !> The law of a group.
@@ -40,6 +37,8 @@ contains
       made%exact_tangent = .true.
       made%state_names = [character(NAME_LENGTH) :: 'void_ratio', 'saturation']
       made%n_state = size(made%state_names)
+      made%place_e = PLACE_E
+      made%place_s_w = PLACE_S_W
       allocate (law, source=made)
    end subroutine new_hypoelastic
 
@@ -109,24 +108,4 @@ contains
 
       write (text, '(a,es10.2,a)') 'the hypoelastic law needs pressure; the mean stress is ', report%value, ' kPa.'
    end subroutine message
-
-   pure real(wp) function default_void_ratio(self)
-      class(hypoelastic_t), intent(in) :: self
-
-      default_void_ratio = 0.0_wp
-   end function default_void_ratio
-
-   pure real(wp) function void_ratio(self, state)
-      class(hypoelastic_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      void_ratio = state(PLACE_E)
-   end function void_ratio
-
-   pure real(wp) function saturation(self, state)
-      class(hypoelastic_t), intent(in) :: self
-      real(wp), intent(in) :: state(:)
-
-      saturation = state(PLACE_S_W)
-   end function saturation
 end module material_hypoelastic

@@ -6,9 +6,9 @@ module mud_tensor
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, all_finite, all_zero, outer_add, &
-             outer_sum, rotate, LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, UNIT_STRAINS, &
-             ANY_TENSORS, strain_directions
+   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, within, all_finite, all_zero, &
+             outer_add, outer_sum, rotate, LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, &
+             UNIT_STRAINS, ANY_TENSORS, strain_directions
 
    !> Directions of a derivative that are worked on side by side: six strains, the suction and an idle one, for an even
    !> number the compiler takes two at a time.
@@ -136,6 +136,14 @@ contains
 
       is_finite = iand(transfer(x, 0_int64), EXPONENT_BITS) /= EXPONENT_BITS
    end function is_finite
+
+   !> Finite and of magnitude up to a limit, both in one unit. A NaN is not compared: a comparison would trap.
+   pure logical function within(value, limit)
+      real(wp), intent(in) :: value, limit
+
+      within = is_finite(value)
+      if (within) within = abs(value) <= limit
+   end function within
 
    !> True if every number is finite, without a branch for each. x(:) of any size; true of none.
    pure logical function all_finite(x)

@@ -6,7 +6,7 @@ module mud_checks
    use mud_state, only: state_t
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_INCREMENT_TOO_LARGE, ON_STRESS, &
       ON_STRAIN, ON_SUCTION
-   use mud_tensor, only: is_finite
+   use mud_tensor, only: is_finite, within
    implicit none (type, external)
    private
    public :: check_stress, check_increment
@@ -54,12 +54,4 @@ contains
                        -par%largest_suction_step, par%largest_suction_step)
       end if
    end subroutine check_increment
-
-   !> Finite and of magnitude up to a limit. A NaN is not compared: a comparison would trap.
-   pure logical function within(value, limit)
-      real(wp), intent(in) :: value, limit
-
-      within = is_finite(value)
-      if (within) within = abs(value) <= limit
-   end function within
 end module mud_checks
