@@ -2,9 +2,12 @@
  * Increments side by side where the processor has what they are compiled for; compiled itself for any processor. */
 int mud_lane_points(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports);
 int mud_lane_points_v3(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports);
+int mud_lane_points_v4(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports);
 
 int mud_lane_points(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports)
 {
+   if (__builtin_cpu_supports("x86-64-v4"))
+      return mud_lane_points_v4(material, increments, n, tangent, outputs, reports);
    if (!__builtin_cpu_supports("x86-64-v3"))
       return 0;
    return mud_lane_points_v3(material, increments, n, tangent, outputs, reports);

@@ -17,7 +17,7 @@ module mud_lane_kernel
 contains
    !> See mud_side_by_side. A failed increment has its status in its report alone.
    recursive integer(c_int) function mud_lane_points(material, increments, n, tangent, outputs, reports) &
-      bind(c, name='mud_lane_points_v3')
+      bind(c)
       type(c_ptr), value :: material, increments, outputs, reports
       integer(c_int), value :: n, tangent
       type(params_t), pointer :: par

@@ -25,7 +25,7 @@ module mud_lane_loops
    public :: mud_find_rates
 contains
    !> The rates of all lanes, lanes_t, of a material, params_t.
-   subroutine mud_find_rates(material, lanes) bind(c, name='mud_find_rates')
+   subroutine mud_find_rates(material, lanes) bind(c)
       type(c_ptr), value :: material, lanes
       type(params_t), pointer :: par
       type(lanes_t), pointer :: q
@@ -41,7 +41,7 @@ contains
       type(lanes_t), intent(inout) :: q
       type(suction_law_t) :: law
       real(wp) :: known(WIDTH), n(WIDTH, 6), again(WIDTH)
-      integer :: j
+      integer :: j, pass
 
       !$omp simd
       do j = 1, WIDTH
@@ -63,20 +63,21 @@ contains
       end do
       known = q%known
       n = q%n
-      call solve(par, q)
-      q%first_drive = q%drive
-      q%swell = max(-q%l*q%d, 0.0_wp)
-      again = number(q%drive > 0.0_wp .and. q%active < 0.5_wp)
-      if (any(again > 0.5_wp)) then
+      do pass = 1, 2   ! one call: of two the compiler makes copies that round in their own ways
+         call solve(par, q)
+         if (pass == 2) exit
+         q%first_drive = q%drive
+         q%swell = max(-q%l*q%d, 0.0_wp)
+         again = number(q%drive > 0.0_wp .and. q%active < 0.5_wp)
+         if (all(again < 0.5_wp)) exit
          q%active = max(q%active, again)
          ! the others find again what they found, from where they began: no lane depends on those beside it
          q%known = merge(1.0_wp, known, again > 0.5_wp)
          do j = 1, 6
             q%n(:, j) = merge(q%n(:, j), n(:, j), again > 0.5_wp)
          end do
-         call solve(par, q)
-         q%fails = max(q%fails, number(q%active > 0.5_wp .and. q%drive < 0.0_wp))
-      end if
+      end do
+      q%fails = max(q%fails, number(q%active > 0.5_wp .and. q%drive < 0.0_wp))
       if (all(q%turns < 0.5_wp)) return
       !$omp simd
       do j = 1, WIDTH

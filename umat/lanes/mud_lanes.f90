@@ -33,7 +33,7 @@ module mud_lanes
    public :: fits_lanes, update_side_by_side
 
    interface
-      subroutine mud_find_rates(material, lanes) bind(c, name='mud_find_rates')
+      subroutine mud_find_rates(material, lanes) bind(c)
          import :: c_ptr
          type(c_ptr), value :: material, lanes
       end subroutine mud_find_rates
