@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Warnings about the start of a scene and of its stages: balance, air, water outside, velocities, motions, plates,
-!> pulses that are over. What they tell is allowed, but usually a mistake.
+!> Warnings about the start of a scene and of its stages: balance, air, water outside or held, velocities, motions,
+!> plates, pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
    use acting_places, only: nodes_of_ground
@@ -9,7 +9,8 @@ module start_look
    use history_shapes, only: slope_beside
    use warnings, only: print_warning
    use start_findings, only: balance_t
-   use model_types, only: model_t, action_t, fix_t, plate_t
+   use model_types, only: model_t, action_t, factor_at, fix_t, plate_t
+   use porous_domain, only: COUPLED, DRAINED
    use scene_parts, only: acts_in, amplitude_t, place_of, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
@@ -33,6 +34,7 @@ contains
       call look_at_water_outside(model)
       call look_at_velocity(model)
       call look_at_dashpots(model)
+      call look_at_held_water(model)
       do i = 1, size(model%fixes)
          call look_at_motion(model, model%fixes(i))
       end do
@@ -145,6 +147,34 @@ contains
          return
       end do
    end subroutine look_at_dashpots
+
+   !> Water whose weight follows a history of gravity while its pressure is held: the skeleton bears the change.
+   subroutine look_at_held_water(model)
+      type(model_t), intent(in) :: model
+      integer, parameter :: TIMES = 32   !< At which the history is asked in a stage.
+      real(wp) :: start, factors(0:TIMES)
+      logical :: held(size(model%domain%regions))
+      character(60) :: why
+      integer :: s, k
+
+      start = 0.0_wp
+      do s = 1, size(model%stages)
+         factors = [(factor_at(model, model%gravity_amplitude, start + k*model%stages(s)%duration/TIMES), k=0, TIMES)]
+         start = start + model%stages(s)%duration
+         held = model%domain%regions%with_w .and. model%domain%regions%drainage == DRAINED
+         why = 'drained regions keep the pressures of the start'
+         if (.not. has_rates(model%stages(s)%kind)) then
+            held = held .or. (model%domain%regions%with_w .and. model%domain%regions%drainage == COUPLED)
+            why = 'a static stage keeps the pressures with which it begins'
+         end if
+         if (.not. (any(held) .and. maxval(factors) - minval(factors) > ROUNDING)) cycle
+         call print_warning('stage '//trim(model%stages(s)%name)//': gravity_history takes the weight of the pore '// &
+            'water from '//short(minval(factors))//' to '//short(maxval(factors))//' of its value, and its '// &
+            'pressure stays, since '//trim(why)//': the skeleton bears the change. Let it follow in a '// &
+            'quasi_static stage, in which the region is coupled.')
+         return
+      end do
+   end subroutine look_at_held_water
 
    !> Water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
    subroutine look_at_water_outside(model)

@@ -183,6 +183,15 @@ def test_no_doubt_no_warning():
         told = warnings(text, "--check")
         check(what, any(all(word in line for word in words) for line in told), told)
 
+    # Water of twice the weight, whose pressure stays: without a history, or where it flows, there is no doubt.
+    heavier = SCENE.replace("gravity = 9.81 /", "gravity = 9.81 gravity_history = 'g' /\n"
+                            "&history name = 'g' times = 0, 1 values = 1, 2 /")
+    for what, words, old, new in (("a static stage keeps", 1, "'quasi_static'", "'static'"),
+                                  ("drained regions keep", 1, "0.8 perm", "0.8 drainage = 'drained' perm"),
+                                  ("gravity_history", 0, "none", "")):
+        told = [line for line in warnings(heavier.replace(old, new), "--check") if what in line]
+        check(f"water that gets heavier: {what}", [line.count("from 1 to 2") for line in told] == [1]*words, told)
+
 
 def test_an_incompressible_viscous_water_is_no_doubt():
     # What is meant: an incompressible water, a second cycle of a history that has begun before.

@@ -158,6 +158,30 @@ def test_without_e_eps_v_is_believed():
         "e grows from 0.78",
         kind="oedometer",
     )
+    # Units that only the size of the numbers tells, in the kinds of test that have no strength.
+    for kind, what, text, words in (
+        ("drained", "the volume of a loose sample with the sign swapped",
+         "test,eps_a_percent,eps_v_percent,q_kPa,p_kPa,e_0\n"
+         "L,0,0,0,100,0.95\nL,1,-0.3,70,123.3,0.95\nL,5,-0.8,120,140,0.95\nL,15,-0.9,130,143.3,0.95\n",
+         "is swapped"),
+        ("oedometer", "strains of compression as fractions under per cent",
+         "test,sigma_a_kPa,eps_a_percent,e_0\nO,25,0,0.8\nO,100,0.005,0.8\nO,400,0.011,0.8\n", "call the column eps_a"),
+        ("stiffness", "G_max in MPa", "p_kPa,e,G_max\n100,0.7,90\n200,0.7,127\n", "G_max_MPa"),
+        ("modulus", "shear strains in per cent", "gamma,G_ratio,p_0,e_0\n0.001,0.98,100,0.8\n0.01,0.83,100,0.8\n",
+         "gamma_percent"),
+        ("modulus", "the same with damping alone", "gamma,damping,p_0,e_0\n0.001,0.01,100,0.8\n0.01,0.03,100,0.8\n",
+         "gamma_percent"),
+        ("modulus", "shear strains as fractions under per cent",
+         "gamma_percent,G_ratio,p_0,e_0\n1e-5,0.95,100,0.8\n1e-3,0.33,100,0.8\n", "call the column gamma"),
+        ("modulus", "damping in per cent", "gamma,damping,p_0,e_0\n1e-4,4,100,0.8\n", "damping_percent"),
+        ("modulus", "a modulus that is not over G_max", "gamma,G_ratio,p_0,e_0\n1e-4,61,100,0.8\n", "G over G_max"),
+        ("modulus", "a stress of the start in MPa", "gamma,G_ratio,p_0,e_0\n1e-4,0.8,0.1,0.8\n", "_MPa"),
+        ("liquefaction", "a stress ratio in per cent", "csr,N,p_0,e_0\n25,3,100,0.8\n15,40,100,0.8\n", "q/(2 p_0)"),
+        ("cyclic", "r_u in per cent",
+         "control,cycle_by,amplitude,cycle,p_0,e_0,r_u\nundrained,q,30,1,100,0.8,12\n", "r_u in per cent"),
+        ("retention", "suction in MPa", "suction,S_w\n0.001,0.98\n0.005,0.6\n0.05,0.2\n", "suction_MPa"),
+    ):
+        hears(what, text, words, kind=kind)
     hears("S_w that grows with suction", "suction_kPa,S_w\n1,0.2\n5,0.6\n10,0.9\n", "must fall", kind="retention")
     hears("S_w in per cent", "suction_kPa,S_w\n1,98\n5,60\n10,20\n", "per cent?", kind="retention")
     hears(

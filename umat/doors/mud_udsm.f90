@@ -9,7 +9,8 @@ module mud_udsm
    use mud_door, only: ORDER, place_of, props_at, statev_at, fewest_props, prepare
    use mud_interface, only: mud_report, mud_blocks, mud_place, mud_prepared_size, mud_prepared_statev, &
       mud_default_props, mud_increment_at, mud_refuse, mud_text, MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_UNIT, MUD_OK, &
-      MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_ON_ARGUMENT, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_IN_PIECES
+      MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_NSTATV, MUD_ON_ARGUMENT, MUD_ON_STATEV, MUD_TANGENT_NONE, &
+      MUD_TANGENT_ELASTIC, MUD_IN_PIECES
    implicit none (type, external)
    private
    public :: user_mod, model_count, model_name, param_count, param_name, param_unit, state_count, state_name, state_unit
@@ -34,7 +35,7 @@ contains
    !> IDTASK 1 initial state variables into STVAR0, 2 stresses, 3 stiffness, 4 number of state variables, 5 kind of
    !> stiffness, 6 elastic stiffness. IABORT 1 where a task fails; a sentence says why. Stress and stiffness in the unit
    !> of p_atm, tension positive. PROPS without those of hysteresis. Codes as in kernel_point, besides MUD_BAD_OPTION
-   !> for an unknown task or model and MUD_NULL_ARGUMENT.
+   !> for an unknown task or model, MUD_NULL_ARGUMENT and MUD_BAD_NSTATV.
    subroutine user_mod(idtask, imod, isundr, istep, iter, iel, int, x, y, z, time0, dtime, props, sig0, swp0, stvar0, &
                        deps, d, bulkw, sig, swp, stvar, ipl, nstat, nonsym, istrsdep, itimedep, itang, iprjdir, &
                        iprjlen, iabort) bind(c, name='user_mod_')
@@ -51,7 +52,7 @@ contains
       iabort = 0
       soil%place = place_of('user_mod_', istep, iter, iel, int)
       soil%material => material
-      call check(idtask, imod, props, sig0, stvar0, soil, report)
+      call check(idtask, imod, nstat, props, sig0, stvar0, soil, report)
       if (report%status == MUD_OK) then
          select case (idtask)
          case (BEGIN_STATE)
@@ -80,9 +81,10 @@ contains
       end associate
    end subroutine user_mod
 
-   !> The task is known, the model is 1, PROPS are good. Tasks 4 and 5 need no arrays.
-   subroutine check(idtask, imod, props, sig0, stvar0, soil, report)
-      integer(c_int), intent(in) :: idtask, imod
+   !> The task is known, the model is 1, PROPS are good, and STVAR0 has room, where the host says how much (NSTAT above
+   !> 0). Tasks 4 and 5 need no arrays.
+   subroutine check(idtask, imod, nstat, props, sig0, stvar0, soil, report)
+      integer(c_int), intent(in) :: idtask, imod, nstat
       type(c_ptr), intent(in) :: props, sig0, stvar0
       type(soil_t), intent(inout) :: soil
       type(mud_report), intent(out) :: report
@@ -98,6 +100,11 @@ contains
             if (report%status /= MUD_OK) return
             soil%stress = read_six(sig0)
             call c_f_pointer(stvar0, soil%state, [mud_prepared_statev(soil%material)])
+            if (nstat > 0 .and. nstat < size(soil%state)) then
+               report = mud_report(MUD_BAD_NSTATV, MUD_ON_STATEV, value=real(nstat, wp), &
+                                   lower=real(size(soil%state), wp), upper=huge(1.0_wp))
+               return
+            end if
             soil%suction = soil%state(statev_at('suction'))
          else
             report = mud_report(MUD_NULL_ARGUMENT, MUD_ON_ARGUMENT)
