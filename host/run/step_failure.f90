@@ -158,8 +158,8 @@ contains
              'most of them in element '//whole(e)//', ('//short(x(1))//', '//short(x(2))//') m'
    end function soft_points
 
-   !> The largest and the least slope of the free displacements, where the least are rounding beside the largest or these
-   !> overflow; else nothing.
+   !> The largest and the least slope of the free displacements, where the least are rounding beside the largest or sums
+   !> of these overflow; else nothing.
    function unequal_slopes(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
