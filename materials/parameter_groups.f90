@@ -22,6 +22,9 @@ module parameter_groups
    !> Void ratios and stresses [unit of p_atm] of the tests behind a material: nor are these.
    character(12), parameter :: TESTED_KEYS(4) = [character(12) :: 'tested_e_min', 'tested_e_max', 'tested_p_min', &
                                                  'tested_p_max']
+   !> Parameters that switch others on where they are above 0, and how many of these follow each.
+   character(10), parameter :: SWITCHES(3) = [character(10) :: 'hysteresis', 'c_chi', 'c_ell']
+   integer, parameter :: BEHIND(3) = [5, 2, 3]
 
 contains
    !> Fills PROPS from a group. Its `file`, if any, is read first; the group's own values replace those. props has as
@@ -135,6 +138,7 @@ contains
       text = c_null_char
       allowed = mud_validate_props(props, size(props), text, BUFFER) == 0
       sentence = from_c(text)
+      if (allowed) call look_behind_switches(group, props, doubt)
       if (allowed .and. index(sentence, WARNING) /= 1) return
       line = group%line
       first = len(sentence) + 1
@@ -150,6 +154,27 @@ contains
          call raise(fault, EXIT_INPUT, at_line(group%file, line)//sentence)
       end if
    end subroutine apply_group
+
+   !> Doubt about the first parameter of a group that was changed behind a switch that is off.
+   subroutine look_behind_switches(group, props, doubt)
+      type(group_t), intent(in) :: group
+      real(wp), intent(in) :: props(:)
+      character(*), intent(inout) :: doubt
+      real(wp) :: defaults(size(props))
+      integer :: i, k, at
+
+      if (mud_default_props(defaults, size(defaults)) /= 0) return
+      do i = 1, size(SWITCHES)
+         at = property_index(trim(SWITCHES(i)))
+         if (props(at) > 0.0_wp) cycle
+         do k = at + 1, at + BEHIND(i)
+            if (find_entry(group, property_name(k)) == 0 .or. abs(props(k) - defaults(k)) <= 0.0_wp) cycle
+            doubt = at_line(group%file, group%entries(find_entry(group, property_name(k)))%line)// &
+                    property_name(k)//' has no effect with '//trim(SWITCHES(i))//' = 0.'
+            return
+         end do
+      end do
+   end subroutine look_behind_switches
 
    !> Keys of a group of parameters, with their limits in the unit of stress that p_atm tells.
    function keys_of_parameters(props, group) result(keys)

@@ -46,6 +46,7 @@ contains
       if (s < 0.0_wp .or. s > 1.0_wp) slope = 0.0_wp
       s = min(max(s, 0.0_wp), 1.0_wp)
       k = relative_t(law%k_rw, law%k_ra, 0.0_wp, 0.0_wp)
+      if (law%law == LAW_CONSTANT) return
       select case (law%law)
       case (LAW_COREY, LAW_POWER)
          t = power(s, law%c)

@@ -2,9 +2,10 @@
 !> Warnings about supports, loads and histories of a scene that are allowed but usually mistakes.
 module boundary_warnings
    use kinds, only: wp
+   use generalised_alpha, only: has_rates
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
-   use model_types, only: model_t, action_t, fix_t
+   use model_types, only: model_t, action_t, acting_t, fix_t
    use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
@@ -201,7 +202,7 @@ contains
       end subroutine look
    end subroutine look_at_histories
 
-   !> Supports of pressures and inflows that act on a part of their group alone.
+   !> Supports of pressures and inflows that act on a part of their group alone, or in static stages alone.
    subroutine look_at_places(model)
       type(model_t), intent(in) :: model
       logical :: flows(size(model%domain%mesh%x, 2))
@@ -210,7 +211,9 @@ contains
       flows = nodes_with_flow(model%domain)
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-            if (one%field > DISPLACEMENTS .and. .not. all(flows(nodes))) call print_warning(place_of(one)// &
+            if (one%field <= DISPLACEMENTS) cycle
+            call look_at_stages(one, WORDS(one%field))
+            if (.not. all(flows(nodes))) call print_warning(place_of(one)// &
                trim(WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
                whole(size(nodes))//' nodes of '''//trim(one%group_name)//''': the others lie in no region with '// &
                'drainage = ''coupled''.')
@@ -219,6 +222,7 @@ contains
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
             if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
+            call look_at_stages(one, 'the inflow')
             associate (edges => edges_with_flow(model%domain, one%group))
                if (.not. all(edges)) call print_warning(place_of(one)//'fluid flows in through '// &
                   whole(count(edges))//' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)// &
@@ -226,5 +230,17 @@ contains
             end associate
          end associate
       end do
+   contains
+      subroutine look_at_stages(one, what)
+         class(acting_t), intent(in) :: one
+         character(*), intent(in) :: what
+         integer :: s
+
+         do s = 1, size(model%stages)
+            if (acts_in(one%stages, model%stages(s)%name) .and. has_rates(model%stages(s)%kind)) return
+         end do
+         call print_warning(place_of(one)//trim(what)//' has no effect: the stages in which it acts are static, '// &
+                            'where pressures stay.')
+      end subroutine look_at_stages
    end subroutine look_at_places
 end module boundary_warnings

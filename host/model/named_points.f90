@@ -15,6 +15,7 @@ module named_points
    public :: find_point, unknowns_at, motion_at
 
    real(wp), parameter :: SAME_PLACE = 1.0e-9_wp   !< Share of the mesh: a point nearer to a node is there.
+   real(wp), parameter :: EQUALLY_NEAR = 1.0e-6_wp !< Share of a distance that is rounding of coordinates.
    real(wp), parameter :: SETTLED = 1.0e-10_wp     !< Local coordinates are known to this.
    !> A point outside the mesh by less than this share of an element takes the values that the element continues to: its
    !> coordinates may have been rounded, or stand for a side that is bent.
@@ -65,7 +66,10 @@ contains
             point%pressure_weights = 0.0_wp
             call linear(local(1), local(2), point%pressure_weights(:3), dn_linear)
          end if
-         point%gauss = minloc([((norm2(m%gauss(g, e)%x - point%x), g=1, m%rule), e=1, size(mesh%t6, 2))], 1)
+         ! Around a node several are equally near, and rounding is not to choose: the first of them.
+         associate (far => [((norm2(m%gauss(g, e)%x - point%x), g=1, m%rule), e=1, size(mesh%t6, 2))])
+            point%gauss = findloc(far <= (1 + EQUALLY_NEAR)*minval(far), .true., dim=1)
+         end associate
       end associate
    end subroutine find_point
 

@@ -50,15 +50,19 @@ contains
       call k%text('name', law%name, 'name, for the key of &region', REQUIRED)
       call k%number('intrinsic', law%intrinsic, TINY_, ONE, 'intrinsic permeability [m2]', REQUIRED)
       call k%word('law', law%law, 'corey|mualem|power|constant', 'relative permeabilities')
-      call k%number('s_min', law%s_min, ZERO, 0.999_wp, 'S_w at which S_e = 0 [-]', 'law=corey|mualem|power')
-      call k%number('s_max', law%s_max, 0.001_wp, ONE, 'S_w at which S_e = 1 [-]', 'law=corey|mualem|power')
-      call k%number('a', law%a, ZERO, BIG, 'power: k_rw = 1 - a (1 - S_w)**b', 'law=power')
-      call k%number('b', law%b, ONE, 100*ONE, 'corey: k_rw = S_e**b; power: see a', 'law=corey|power')
-      call k%number('c', law%c, ONE, 100*ONE, 'corey, power: k_ra = (1 - S_e)**2 (1 - S_e**c)', 'law=corey|power')
-      call k%number('m', law%m, 0.01_wp, 0.99_wp, 'exponent of Mualem-van Genuchten [-]', 'law=mualem')
-      call k%number('k_rw', law%k_rw, ZERO, ONE, 'constant: relative permeability to water [-]', 'law=constant')
-      call k%number('k_ra', law%k_ra, ZERO, ONE, 'constant: relative permeability to air [-]', 'law=constant')
-      call k%number('floor', law%floor, ZERO, ONE, 'least relative permeability [-]')
+      call k%number('s_min', law%s_min, ZERO, 0.999_wp, 'S_w at which S_e = 0 [-]', 'law=corey|mualem|power :p_c :time')
+      call k%number('s_max', law%s_max, 0.001_wp, ONE, 'S_w at which S_e = 1 [-]', 'law=corey|mualem|power :p_c :time')
+      call k%number('a', law%a, ZERO, BIG, 'power: k_rw = 1 - a (1 - S_w)**b', 'law=power :p_c :time')
+      call k%number('b', law%b, ONE, 100*ONE, 'corey: k_rw = S_e**b; power: see a', 'law=corey|power :p_c :time')
+      call k%number('c', law%c, ONE, 100*ONE, 'corey, power: k_ra = (1 - S_e)**2 (1 - S_e**c)', &
+                    'law=corey|power :p_c :time')
+      call k%number('m', law%m, 0.01_wp, 0.99_wp, 'exponent of Mualem-van Genuchten [-]', 'law=mualem :p_c :time')
+      call k%number('k_rw', law%k_rw, ZERO, ONE, 'constant: relative permeability to water [-]', &
+                    'law=constant :p_w :time')
+      call k%number('k_ra', law%k_ra, ZERO, ONE, 'constant: relative permeability to air [-]', &
+                    'law=constant :p_c :time')
+      call k%number('floor', law%floor, ZERO, ONE, 'least relative permeability of a curve [-]', &
+                    'law=corey|mualem|power :p_c :time')
       if (k%lists) return
       if (law%s_max <= law%s_min) call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)// &
                                              's_max must be larger than s_min.')

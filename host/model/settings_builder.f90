@@ -49,9 +49,9 @@ contains
          call k%flag('seepage_inertia', domain%seepage_inertia, 'no|yes', 'yes', &
                      'acceleration of the skeleton in Darcy''s law', ':p_w :dynamic')
          call k%flag('saturation_rate', domain%full_rate, 'full|suction', 'full', &
-                     'rate of saturation by void ratio and suction, or by suction alone', ':p_c')
+                     'rate of saturation by void ratio and suction, or by suction alone', ':p_c :time')
          call k%flag('initial_flow', model%subtract_flow, 'drain|subtract', 'subtract', &
-                     'subtract: the initial flow is maintained', ':p_w :time')
+                     'subtract: the initial flow is maintained', ':p_w :time :flow')
          call k%number('step_tolerance', model%step_tolerance, 1.0e-8_wp, 0.5_wp, &
                        'local tolerance of controlled steps [-], see host/SCENE.md')
          call k%texts('goals', goals, 'answers that mud_study measures, as ''top.u_z''; default: all')
@@ -83,15 +83,16 @@ contains
       associate (f => model%domain%fluids)
          call k%number('k_w', f%k_w, TINY_, BIG, 'bulk modulus of water [kPa]', ':p_w :time')
          call k%number('rho_w', f%rho_w, ZERO, 1000*ONE, 'density of water [Mg/m3]', ':p_w')
-         call k%number('eta_w', f%eta_w, TINY_, BIG, 'viscosity of water [kPa s]', ':p_w :time')
+         call k%number('eta_w', f%eta_w, TINY_, BIG, 'viscosity of water [kPa s]', ':p_w :time :flow')
          call k%flag('gas', f%ideal_gas, 'constant|ideal', 'ideal', 'ideal: K_a = p_ref + p_a, density as well', ':p_c')
-         call k%number('k_a', f%k_a, TINY_, BIG, 'bulk modulus of a constant gas [kPa]', 'gas=constant :p_c')
+         call k%number('k_a', f%k_a, TINY_, BIG, 'bulk modulus of a constant gas [kPa]', &
+                       'gas=constant :p_c :time')
          call k%number('rho_a', f%rho_a, ZERO, 1000*ONE, 'density of air (ideal: at p_ref) [Mg/m3]', ':p_c')
-         call k%number('eta_a', f%eta_a, TINY_, BIG, 'viscosity of air [kPa s]', ':p_c')
+         call k%number('eta_a', f%eta_a, TINY_, BIG, 'viscosity of air [kPa s]', ':p_c :time :flow')
          call k%number('p_ref', f%p_ref, TINY_, BIG, 'absolute pressure where p_a = 0 [kPa]', &
                        'gas=ideal :p_c')
          call k%number('henry', f%henry, ZERO, 0.5_wp, &
-                       'volume of air that a volume of water dissolves [-]; 0.02 at 20 C', ':p_c')
+                       'volume of air that a volume of water dissolves [-]; 0.02 at 20 C', ':p_c :time')
       end associate
    end subroutine build_fluids
 

@@ -109,14 +109,16 @@ contains
                   'and its length [s]', 'steps=given')
       call k%number('output_dt', stage%output_dt, TINY_, BIG, &
                     'controlled steps end at multiples of it, with fields [s]', ':controlled')
-      call k%number('dt_growth', stage%dt_growth, ONE, 10*ONE, 'factor on the step after every accepted one')
-      call k%number('dt_max', stage%dt_max, TINY_, BIG, 'largest step with dt_growth [s]', '+dt_growth')
+      call k%number('dt_growth', stage%dt_growth, ONE, 10*ONE, 'factor on the step after every accepted one', ':given')
+      call k%number('dt_max', stage%dt_max, TINY_, BIG, 'largest step, of controlled ones and with dt_growth [s]', &
+                    ':grows')
       call k%whole('cuts', stage%cuts, 0, 40, 'how often a step may be halved')
       call k%number('rho_inf', stage%rho_inf, ZERO, ONE, &
                     'spectral radius of generalised-alpha [-]; default 0.8, dynamic with contact 0', &
                     'analysis=quasi_static|dynamic')
       call k%number('created_energy', stage%created_energy, TINY_, BIG, &
-                    'energy created out of nothing that ends the run, share of the largest work [-]')
+                    'energy created out of nothing that ends the run, share of the largest work [-]', &
+                    'analysis=dynamic')
       call k%number('tolerance', stage%tolerance, 1.0e-14_wp, 0.1_wp, 'Newton: error that ends the '// &
                     'iteration [-]; what is left after contact is lost depends on it by per cents, see host/SCENE.md')
       call k%word('measure', stage%measure, 'forces|residual|correction|change|auto', &

@@ -128,7 +128,7 @@ contains
              (sums(list(2, i), list(1, i)), i=1, size(list, 2))]
    contains
       subroutine add_reactions()
-         integer :: by(run%model%dofs%n), air_by(size(run%model%domain%mesh%x, 2)), i, k, group
+         integer :: by(run%model%dofs%n), air_by(size(run%model%domain%mesh%x, 2)), i, k, group(2)
          real(wp) :: w, a
 
          call prescribing_fixes(run%model, run%stage, run%constraint, run%state%time, by, air_by)
@@ -139,24 +139,27 @@ contains
                if (dofs%of(AT_P_W, i) == 0) cycle
                w = reaction(dofs%of(AT_P_W, i))
                a = 0.0_wp
-               k = max(by(dofs%of(AT_P_W, i)), air_by(i))
+               k = by(dofs%of(AT_P_W, i))
                if (run%model%domain%with_c) then
                   a = reaction(dofs%of(AT_P_C, i))
                   k = max(k, by(dofs%of(AT_P_C, i)))
                   ! The first balance is that of both fluids; where the air pressure is given, that of the water.
                   if (.not. constraint%air(i)) w = w - a
                end if
+               ! What p_a asks for is air: beside it the water is that of another &fix, or of a drained region.
                group = 0
                if (k > 0) group = run%model%fixes(k)%group
+               if (air_by(i) > 0) group(2) = run%model%fixes(air_by(i))%group
                associate (at => dofs%of(AT_P_W, i))
                   if (constraint%limited(at)) then
                      group = constraint%limited_by(at)
-                     if (constraint%fixed(at)) sums(LIMIT, group) = sums(LIMIT, group) + 1
+                     if (constraint%fixed(at)) sums(LIMIT, group(1)) = sums(LIMIT, group(1)) + 1
                      ! What a free node's balance leaves is Newton's, and no flow.
                      if (.not. constraint%fixed(at)) w = 0.0_wp
                   end if
                end associate
-               if (group > 0) sums([OUT_W, OUT_A], group) = sums([OUT_W, OUT_A], group) - [w, a]
+               if (group(1) > 0) sums(OUT_W, group(1)) = sums(OUT_W, group(1)) - w
+               if (group(2) > 0) sums(OUT_A, group(2)) = sums(OUT_A, group(2)) - a
             end do
          end associate
       end subroutine add_reactions

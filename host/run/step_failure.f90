@@ -11,7 +11,9 @@ module step_failure
    use convergence, only: BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
    use run_state, only: run_t
-   use unknown_fields, only: FIELD_NAMES
+   use sparse_factors, only: RCOND_SINGULAR
+   use sparsity_pattern, only: place_in => place_of
+   use unknown_fields, only: FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: explain_failure, explain_short_step, LEAST_OF_STAGE
@@ -48,6 +50,11 @@ contains
          case (CONTACT_FAILED)
             call raise(fault, EXIT_CONVERGENCE, place//run%system%contacts%message()//'.')
          case (BODY_FREE)
+            alone = unequal_slopes(run)
+            if (alone /= '') then
+               call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//alone)
+               return
+            end if
             if (run%assembly%replaced > 0) then
                call raise(fault, EXIT_FREE_BODY, place//'the equations are singular'//soft_points(run)// &
                           unstressed(run)//run%model%on_contact(run%at%stage)%words//': add a surcharge or suction '// &
@@ -150,6 +157,30 @@ contains
              ' points that have no stiffness against some strain (tension cut-off or failure), '// &
              'most of them in element '//whole(e)//', ('//short(x(1))//', '//short(x(2))//') m'
    end function soft_points
+
+   !> The largest and the least slope of the free displacements, where the least are rounding beside the largest or sums
+   !> of these overflow; else nothing.
+   function unequal_slopes(run) result(text)
+      type(run_t), intent(in) :: run
+      character(:), allocatable :: text
+      real(wp) :: slope(run%model%dofs%n)
+      logical :: free(run%model%dofs%n)
+      integer :: i, least, largest
+
+      text = ''
+      associate (dofs => run%model%dofs, values => run%assembly%values)
+         slope = [(values(place_in(run%pattern, i, i)), i=1, dofs%n)]
+         if (.not. all(ieee_is_finite(slope))) return
+         free = .not. run%constraint%fixed .and. dofs%field <= DISPLACEMENTS .and. slope > 0.0_wp
+         if (.not. any(free)) return
+         largest = maxloc(slope, 1, free)
+         least = minloc(slope, 1, free)
+         if (slope(least) >= RCOND_SINGULAR*slope(largest) .and. slope(largest) < sqrt(huge(1.0_wp))) return
+         text = ' by rounding: the largest slope of a displacement is '//short(slope(largest))//' at '// &
+                place_of(run%model, dofs%node(largest))//', the least '//short(slope(least))//' at '// &
+                place_of(run%model, dofs%node(least))//'; look for a stiffness that is far too large or far too small.'
+      end associate
+   end function unequal_slopes
 
    !> Where a node is: the plate that it stands for, or an element and the point [m].
    function place_of(model, node) result(text)

@@ -8,6 +8,7 @@ module idle_keys
    use material_registry, only: is_law
    use model_types, only: model_t
    use namelists, only: group_t
+   use porous_domain, only: COUPLED
    use scene_keys, only: keys_of_scenes
    use scene_types, only: scene_t
    use texts, only: lower_case, LENGTH
@@ -44,21 +45,30 @@ contains
       type(model_t), intent(in) :: model
       type(group_t), intent(in) :: group
       character(:), allocatable :: why
+      logical :: controlled
 
+      controlled = any(model%stages%controlled .and. model%stages%name == name_of(group))
       why = idle_reason(keys, key, group)
-      if (index(key%acts, ':time') > 0 .and. .not. any(has_rates(model%stages%kind))) then
+      if (why /= '') then
+         ! Its own group says why.
+      else if (index(key%acts, ':time') > 0 .and. .not. any(has_rates(model%stages%kind))) then
          why = ': every stage is static and has no time; analysis = ''quasi_static'' of &stage has'
       else if (index(key%acts, ':dynamic') > 0 .and. .not. any(model%stages%kind == DYNAMIC)) then
          why = ': no stage is dynamic'
       else if (index(key%acts, ':gravity') > 0 .and. .not. model%domain%gravity > 0.0_wp) then
          why = ' without gravity of &scene'
-      else if (index(key%acts, ':controlled') > 0 .and. .not. any(model%stages%controlled .and. &
-               model%stages%name == name_of(group))) then
+      else if (index(key%acts, ':controlled') > 0 .and. .not. controlled) then
          why = ' on steps that are given; leave out dt, or give steps = ''controlled'''
+      else if (index(key%acts, ':given') > 0 .and. controlled) then
+         why = ' on controlled steps; give dt and steps = ''given'''
+      else if (index(key%acts, ':grows') > 0 .and. .not. (controlled .or. given(group, 'dt_growth'))) then
+         why = ' on steps that are given without dt_growth'
       else if (index(key%acts, ':p_w') > 0 .and. .not. model%domain%with_w) then
          why = ': the scene has no field p_w'
       else if (index(key%acts, ':p_c') > 0 .and. .not. model%domain%with_c) then
          why = ': the scene has no field p_c'
+      else if (index(key%acts, ':flow') > 0 .and. .not. any(model%domain%regions%drainage == COUPLED)) then
+         why = ': no &region has drainage = ''coupled'''
       end if
       if (why /= '') call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'// &
                                         trim(group%name)//' has no effect'//why//'.')

@@ -5,7 +5,7 @@ module sparse_factors
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: sparse_t, analyse, factorise, backsolve, times, release, SOLVED, SINGULAR, FAILED
+   public :: sparse_t, analyse, factorise, backsolve, times, release, SOLVED, SINGULAR, FAILED, RCOND_SINGULAR
 
    integer, parameter :: SOLVED = 0, SINGULAR = 1, FAILED = 2
    ! Places in UMFPACK's arrays (umfpack.h), from 1 here.

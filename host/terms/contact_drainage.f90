@@ -11,7 +11,7 @@ module contact_drainage
    use contact_interfaces, only: contacts_t
    use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
-   use scene_parts, only: place_of
+   use scene_parts, only: place_of, LOAD_RAIN
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
    use solution, only: solution_t
@@ -30,7 +30,8 @@ module contact_drainage
    real(wp), parameter :: HALF = 0.5_wp*(1 - 1.0e-9_wp)   !< Up to rounding: half an edge may lie exactly opposite.
 contains
    !> Which &fix give way to a contact: those that prescribe a pressure on all nodes of an edge of the slave. Fault
-   !> EXIT_INPUT: the scene has no pressures, or a contact whose drainage follows its state has no such &fix.
+   !> EXIT_INPUT: the scene has no pressures, rain falls on the slave, or a contact whose drainage follows its state has
+   !> no such &fix.
    subroutine build_group(self, k, number, model, fault)
       class(contact_drainage_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
@@ -57,6 +58,14 @@ contains
          if (model%fixes(f)%field <= DISPLACEMENTS) cycle
          self%gives_way(f, number) = share_an_edge(model, model%contacts(number)%slave, model%fixes(f)%group)
       end do
+      do f = 1, size(model%loads)
+         if (model%loads(f)%kind /= LOAD_RAIN .or. fault%code /= 0) cycle
+         if (share_an_edge(model, model%contacts(number)%slave, model%loads(f)%group)) call raise(fault, EXIT_INPUT, &
+            place_of(model%loads(f))//'rain on '''//trim(model%loads(f)%group_name)//''' would fall on nodes in '// &
+            'contact too, which drainage = ''state'' of the contact '//trim(model%contacts(number)%name)// &
+            ' makes impervious; leave drainage out, or let it rain beside the slave.')
+      end do
+      if (fault%code /= 0) return
       if (.not. any(self%gives_way(:, number))) call raise(fault, EXIT_INPUT, 'Contact '// &
          trim(model%contacts(number)%name)//': drainage = ''state'' releases &fix of p_w, p_c or p_a on the slave, '// &
          'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')

@@ -137,3 +137,10 @@ def test_what_a_buffer_cannot_lie_between_is_refused():
         check(f"the scene has {old}", old in text)
         done = start("refused", text.replace(old, new))
         check(f"{new or 'no ' + old} is refused", done.returncode in (2, 11) and words in done.stderr, done.stderr)
+
+
+def test_a_spring_beyond_rounding_is_named_and_not_a_body_that_moves():
+    # Beside 1e22 kN/m, of which the scheme takes half, masses and block are rounding: no solution, though all is held.
+    done = start("beyond", fall(k="1e22", duration=2e-5, stages=DROP.format(2e-5, "2e-5 cuts = 1", 1)))
+    check("the spring is named", done.returncode == 13 and "singular by rounding" in done.stderr
+          and "5e21 at plate" in done.stderr and "can move" not in done.stderr, done.stderr)

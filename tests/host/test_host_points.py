@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Named points of mud_host lie where the scene says, between nodes too: every mesh tells of the same place."""
+import math
 import os
 import subprocess
 
@@ -52,3 +53,17 @@ def test_a_rounded_place_on_the_edge_is_that_place():
     row = run("rounded", HEAVY.format(pressures="quadratic", r=0.1, z=1.0003))
     settles = -10*(1.0003 - 1.0003**2/2)/1e9
     check("a point just outside", abs(row["between.u_z"]/settles - 1) < 1e-6, (row["between.u_z"], settles))
+
+
+def test_of_equally_near_quadrature_points_the_first_has_the_stress():
+    # Around an inner node several quadrature points are equally near but for rounding.
+    places = [(r, z) for r in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6) for z in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)]
+    text = HEAVY.format(pressures="linear", r=0, z=0) \
+        .replace("r_cells = 2 z = 0, 1 z_cells = 3 z_ratio = 0.8", "r_cells = 7 z = 0, 0.7 z_cells = 7")
+    run("near", text + "".join(f"&point name = 'p{i}' r = {r} z = {z} /\n" for i, (r, z) in enumerate(places)))
+    points = tables.numbers(work / "near/points_s.csv")
+    for place in tables.rows(work / "near/points.csv")[1:]:
+        far = [math.hypot(p["r"] - float(place["r"]), p["z"] - float(place["z"])) for p in points]
+        first = next(p for p, d in zip(points, far) if d < min(far)*(1 + 1e-9))
+        check(f"{place['name']} stands at the first", (float(place["stress_r"]), float(place["stress_z"]))
+              == (first["r"], first["z"]), (place, first))

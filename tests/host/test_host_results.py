@@ -159,6 +159,29 @@ def test_water_at_rest_does_not_flow():
             near(f"{what}, {fields}: what runs off never entered", ledger["outflow"] - ledger["outflow_air"], 0, 1e3)
 
 
+def test_water_into_a_drained_region_is_not_that_of_a_support_of_the_air():
+    # Half a metre of coupled soil above drained ground, p_w at its top 5 kPa above rest; p_a is given
+    # everywhere, where it asks for air alone. Darcy: 2e-4 times 5 kPa over half a metre.
+    row = last(run("""&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 10 /
+&mesh r = 0, 1 r_cells = 1 z = 0, 0.5, 1 z_cells = 1, 1 /
+&elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
+&fluids k_w = 1e15 /
+&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /
+&permeability name = 'k' intrinsic = 2.0e-10 law = 'constant' floor = 0 /
+&region material = 'soil' void_ratio = 1 permeability = 'k' retention = 'flat' /
+&region group = 'block_1_1' material = 'soil' void_ratio = 1 retention = 'flat' drainage = 'drained' /
+&stage name = 's' analysis = 'quasi_static' duration = 1e6 dt = 1e6 tolerance = 1e-9 rho_inf = 0 /
+&fix group = 'all' field = 'u_r' /
+&fix group = 'all' field = 'u_z' /
+&fix group = 'top' field = 'p_w' value = -5 /
+&fix group = 'all' field = 'p_a' /
+&initial p_w_slope = -10 p_c_slope = 10 /
+""", "drained"))
+    near("the support of the water lets it in", row["top.outflow_w"], -2e-4 * 5 / 0.5, 1e-3)
+    near("that of the air none out", row["all.outflow_w"], 0, 1e-3)
+    check("and takes all of the air", row["top.outflow_a"] == 0, row)
+
+
 def test_rain_counts_per_horizontal_area():
     # Rain counts per horizontal area: none falls on a wall, none from below.
     row = last(run(COLUMN.format(fields="u-p_w", retention="", suction="", base=4)

@@ -2,6 +2,7 @@
 """What mud_host warns about at the start and with --check: a scene without a doubt draws nothing, every doubt its own
 sentence, and the run goes on."""
 import os
+import re
 import subprocess
 import sys
 
@@ -56,6 +57,17 @@ DOUBTS = [
      ["u_r of the node at (0, -2) m has two &fix", "'left' and 'bottom'"]),
     ("curve of nobody", "0.8 permeability", "0.8 retention = 'curve' permeability", ["no &retention is named 'curve'"]),
     ("key of another law", "1e-11", "1e-11 m = 0.5", ["m of &permeability has no effect with law = 'corey'"]),
+    ("floor of constants", "1e-11", "1e-11 law = 'constant' floor = 0.1",
+     ["floor of &permeability has no effect with law = 'constant'"]),
+    ("parameter behind a switch", "toyoura.nml'", "toyoura.nml' zeta_chi = 10",
+     ["scene.nml:3: zeta_chi has no effect with c_chi = 0"]),
+    ("pressure of a static stage", "'quasi_static'", "'static'",
+     ["scene.nml:16: p_w has no effect: the stages in which it acts are static"]),
+    ("inflow of a static stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"
+     "&load group = 'top' kind = 'water' value = 1e-6 stages = 'rest' /\n&load",
+     ["the inflow has no effect: the stages in which it acts are static"]),
+    ("energy of a stage without inertia", "dt = 0.5", "dt = 0.5 created_energy = 0.1",
+     ["created_energy of &stage has no effect with analysis = 'quasi_static'"]),
     ("key without its partner", "'bottom' field = 'u_z'", "'bottom' field = 'u_z' datum = 1",
      ["datum of &fix has no effect without value_slope"]),
     ("key beside a file", "name = 'h'", "name = 'h' file = 'h.txt'", ["times of &history has no effect beside file"]),
@@ -191,6 +203,89 @@ def test_no_doubt_no_warning():
                                   ("gravity_history", 0, "none", "")):
         told = [line for line in warnings(heavier.replace(old, new), "--check") if what in line]
         check(f"water that gets heavier: {what}", [line.count("from 1 to 2") for line in told] == [1]*words, told)
+
+
+# Keys whose condition the program alone knows, as `:p_c` where they are declared: many in a scene, each with a reason.
+IDLE = """&scene name = 'idle' geometry = 'plane_strain' fields = '{fields}' pressures = 'linear'
+ saturation_rate = 'full' seepage_inertia = 'no' initial_flow = 'drain' gravity = {gravity} /
+&mesh r = 0, 1, 2 r_cells = 1, 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'rock' young = 1e6 poisson = 0.3 /
+&fluids k_w = 2e6 rho_w = 1 eta_w = 1e-6 gas = '{gas}' {air} rho_a = 0.001 eta_a = 2e-8 henry = 0 /
+&retention name = 'c' /
+&permeability name = 'k' intrinsic = 1e-11 law = '{law}' {relative} /
+&region group = 'block_1_1' material = 'rock' void_ratio = 0.5 drainage = '{drainage}' {pores} damping = 0
+ stiffness_damping = 0 viscosity = 0 /
+&region material = 'rock' void_ratio = 0.5 drainage = '{drainage}' {pores} /
+&initial stress = 'geostatic' k_0_of = 'net' {start} /
+&stage name = 's' analysis = '{analysis}' duration = 1 {steps} /
+&tie first = 'left' second = 'right' pressures = 'no' /
+&plate name = 'lid' r = 0, 2 z = 1 mass = 1 weight = 'yes' /
+&contact name = 'face' slave = 'top' master = 'lid' drainage = 'fixed' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'lid' field = 'u_z' /
+"""
+POROUS = "retention = 'c' permeability = 'k'"
+CURVE = "s_min = 0 s_max = 1 b = 3 c = 2 floor = 1e-4"
+SCENES = {   # What differs from this scene.
+    "": dict(fields="u-p_w-p_c", gravity=9.81, gas="constant", air="k_a = 100", law="corey", relative=CURVE,
+             drainage="coupled", pores=POROUS, start="p_w = 0 p_w_slope = 0", analysis="static",
+             steps="dt = 1 output_dt = 1 dt_max = 1"),
+    "power": dict(law="power", relative="a = 0 b = 3 c = 2"), "mualem": dict(law="mualem", relative="m = 0.5"),
+    "constant": dict(law="constant", relative="k_rw = 1 k_ra = 1"),
+    "quasi": dict(analysis="quasi_static", steps="dt_growth = 2 dt_max = 1"),
+    "dynamic": dict(analysis="dynamic", steps="dt = 1"), 
+    "no_air": dict(fields="u-p_w", start="p_c = 0 p_c_slope = 0 saturation = 1"), "dry": dict(fields="u"),
+    "light": dict(gravity=0), "ideal": dict(gas="ideal", air="p_ref = 100"),
+    "table": dict(start="water_table = 0"), "drained": dict(drainage="drained", pores="retention = 'c'")}
+TOLD = [   # The differences of a scene, why keys of it have no effect, these keys.
+    ("", "every stage is static", "scene.saturation_rate scene.initial_flow fluids.k_w fluids.eta_w fluids.k_a "
+     "fluids.eta_a fluids.henry permeability.s_min permeability.s_max permeability.b permeability.c permeability.floor "
+     "region.viscosity"),
+    ("", "no stage is dynamic", "region.damping region.stiffness_damping scene.seepage_inertia"),
+    ("", "on steps that are given", "stage.output_dt stage.dt_max"),
+    ("power", "every stage is static", "permeability.a permeability.b permeability.c"),
+    ("mualem", "every stage is static", "permeability.m"),
+    ("constant", "every stage is static", "permeability.k_rw permeability.k_ra"),
+    ("quasi", "on controlled steps", "stage.dt_growth"), ("light", "without gravity", "plate.weight"),
+    ("quasi no_air", "no field p_c", "scene.saturation_rate fluids.gas fluids.k_a fluids.rho_a fluids.eta_a "
+     "fluids.henry permeability.s_min permeability.s_max permeability.b permeability.c permeability.floor "
+     "region.retention initial.p_c initial.p_c_slope initial.saturation initial.k_0_of"),
+    ("quasi no_air power", "no field p_c", "permeability.a permeability.b"),
+    ("quasi no_air mualem", "no field p_c", "permeability.m"),
+    ("quasi no_air constant", "no field p_c", "permeability.k_ra"), ("no_air ideal", "no field p_c", "fluids.p_ref"),
+    ("dynamic dry constant", "no field p_w", "scene.pressures scene.seepage_inertia scene.initial_flow fluids.k_w "
+     "fluids.rho_w fluids.eta_w region.permeability region.drainage initial.p_w initial.p_w_slope tie.pressures "
+     "contact.drainage permeability.k_rw"),
+    ("dry table", "no field p_w", "initial.water_table"),
+    ("quasi drained", "no &region has drainage", "scene.initial_flow fluids.eta_w fluids.eta_a")]
+
+
+def conditions_of_sources():
+    """(key, condition) of every key whose condition the program alone knows."""
+    text = "".join(re.sub(r"&\n\s*", "", path.read_text()) for path in sorted((root / "host").rglob("*.f90")))
+    return {(key, condition) for key, rest in re.findall(r"call k%\w+\('(\w+)'(.*)", text)
+            for words in re.findall(r"'((?:[\w=|]+ )*:[\w: ]+)'", rest) for condition in re.findall(r":\w+", words)}
+
+
+def test_every_key_without_effect_is_told_with_its_reason():
+    conditions = {"every stage is static": ":time", "no stage is dynamic": ":dynamic", "on steps that": ":controlled",
+                  "on controlled steps": ":given", "without gravity": ":gravity", "no field p_c": ":p_c",
+                  "no field p_w": ":p_w", "no &region has drainage": ":flow"}
+    said = {}
+    for which, why, keys in TOLD:
+        if which not in said:
+            values = {k: v for name in ["", *which.split()] for k, v in SCENES[name].items()}
+            said[which] = warnings(IDLE.format(**values), "--check")
+        for group, key in (key.split(".") for key in keys.split()):
+            check(f"{which}: {key} of &{group}", any(f"{key} of &{group} has no effect" in line and why in line
+                                                     for line in said[which]), said[which])
+    check("dt_max limits controlled steps", not any("dt_max" in line for line in said["quasi"]), said["quasi"])
+    tried = {(key.split(".")[1], condition) for _, why, keys in TOLD for key in keys.split()
+             for words, condition in conditions.items() if why.startswith(words)}
+    tried |= {("dt_max", ":grows")}
+    left = conditions_of_sources() - tried
+    check("and each condition of a key is tried", not left and len(tried) > 50, sorted(left))
 
 
 def test_an_incompressible_viscous_water_is_no_doubt():

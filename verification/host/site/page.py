@@ -20,7 +20,7 @@ SIMPSON = np.array([1] + [4, 2] * 9 + [4, 1]) / 6     # along the column, as the
 RHO = (2.65 + VOIDS) / (1 + VOIDS)
 LIQUEFIED = Tolerance("the usual criterion of liquefaction, r_u of at least 0.95", absolute=0.05)
 AT_REST = Tolerance("sand without effective stress carries no shear waves: a quarter of the base's motion", absolute=0.25)
-WEIGHT = Tolerance("the stress of a node is the mean of the points around it, in cells of 1 m where it grows by 8.6 kPa/m: "
+WEIGHT = Tolerance("the stress of a node is that of the nearest quadrature point, in cells of 1 m where it grows by 8.6 kPa/m: "
                    "a tenth of a cell", absolute=1.0)
 MOMENTUM = Tolerance("second order: (omega dt)**2/12 = 1.3e-3 of the peak at 2 Hz; the spikes of dilation have "
                      "harmonics of three times that frequency", absolute=0.01)
