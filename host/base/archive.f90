@@ -20,21 +20,21 @@ module archive
    contains
       !> One value or list, of the extent that it has, with its unit and meaning; a text has neither. Whole numbers may
       !> have a range.
-      generic :: exchange => exchange_real, exchange_reals, exchange_table, exchange_whole, exchange_long, &
-                             exchange_wholes, exchange_flag, exchange_text
+      generic :: exchange => exchange_reals, exchange_whole, exchange_long, exchange_wholes, exchange_flag, &
+                             exchange_text
       !> A list that need not be allocated, with its extent.
       generic :: exchange_allocatable => exchange_real_list, exchange_real_table, exchange_whole_list
       procedure :: enter, leave, refuse
       procedure(move_values_i), deferred :: move_values
       procedure(move_text_i), deferred :: move_text
       procedure(find_extents_i), deferred :: find_extents
-      procedure, private :: exchange_real, exchange_reals, exchange_table, exchange_whole, exchange_long, &
-                            exchange_wholes, exchange_flag, exchange_text
+      procedure, private :: exchange_reals, exchange_whole, exchange_long, exchange_wholes, exchange_flag, exchange_text
       procedure, private :: exchange_real_list, exchange_real_table, exchange_whole_list
    end type archive_t
 
    abstract interface
-      !> Writes a list or table, or restores it where the archive has one of its extent; else the archive is damaged.
+      !> Writes a number, list or table, or restores it where the archive has one of its extent; else the archive is
+      !> damaged.
       subroutine move_values_i(self, name, values, unit, meaning)
          import :: archive_t, wp
          class(archive_t), intent(inout) :: self
@@ -82,32 +82,14 @@ contains
       self%good = .false.
    end subroutine refuse
 
+   !> A number, a list or a table.
    subroutine exchange_reals(self, name, values, unit, meaning)
       class(archive_t), intent(inout) :: self
       character(*), intent(in) :: name, unit, meaning
-      real(wp), intent(inout), contiguous :: values(:)
+      real(wp), intent(inout), contiguous :: values(..)
 
       call self%move_values(self%within//name, values, unit, meaning)
    end subroutine exchange_reals
-
-   subroutine exchange_table(self, name, values, unit, meaning)
-      class(archive_t), intent(inout) :: self
-      character(*), intent(in) :: name, unit, meaning
-      real(wp), intent(inout), contiguous :: values(:, :)
-
-      call self%move_values(self%within//name, values, unit, meaning)
-   end subroutine exchange_table
-
-   subroutine exchange_real(self, name, value, unit, meaning)
-      class(archive_t), intent(inout) :: self
-      character(*), intent(in) :: name, unit, meaning
-      real(wp), intent(inout) :: value
-      real(wp) :: values(1)
-
-      values = value
-      call self%exchange_reals(name, values, unit, meaning)
-      value = values(1)
-   end subroutine exchange_real
 
    !> Exchanges whole numbers. The archive is damaged where one is no whole number or lies outside the range.
    subroutine exchange_numbers(self, name, numbers, unit, meaning, least, most)
@@ -234,7 +216,7 @@ contains
          if (allocated(values)) deallocate (values)
          if (extents(1) >= 0) allocate (values(extents(1), extents(2)))
       end if
-      if (allocated(values)) call self%exchange_table(name, values, unit, meaning)
+      if (allocated(values)) call self%exchange_reals(name, values, unit, meaning)
    end subroutine exchange_real_table
 
    subroutine exchange_whole_list(self, name, values, unit, meaning)

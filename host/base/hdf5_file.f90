@@ -29,7 +29,8 @@ module hdf5_file
       character(:), allocatable :: path   !< Name of a new file; it is written beside it and then gets this name.
    end type h5_t
 
-   !> An array of any size, with one or two dimensions, as a dataset; its folders are made. An empty one is left out.
+   !> A number, or an array of any size with one or two dimensions, as a dataset; its folders are made. An empty one is
+   !> left out.
    !> file%good is false after a failure. `unit` is that of the values.
    interface put
       module procedure put_real, put_integer
@@ -137,19 +138,20 @@ contains
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, unit, meaning
       integer(hid_t), intent(in) :: kind
-      integer, intent(in) :: extent(:)
+      integer, intent(in) :: extent(:)   !< None: a number, which is stored as a list of one.
       type(c_ptr), intent(in) :: values
       integer(hid_t) :: space, layout, links, set
-      integer(hsize_t) :: dims(size(extent))
+      integer(hsize_t) :: dims(max(1, size(extent)))
       integer :: status
 
-      dims = extent
-      call h5screate_simple_f(size(extent), dims, space, status)
+      dims = 1
+      dims(:size(extent)) = extent
+      call h5screate_simple_f(size(dims), dims, space, status)
       call note(file, status)
       call h5pcreate_f(H5P_DATASET_CREATE_F, layout, status)
       call h5pset_obj_track_times_f(layout, .false., status)
       call note(file, status)
-      call h5pset_chunk_f(layout, size(extent), dims, status)
+      call h5pset_chunk_f(layout, size(dims), dims, status)
       call h5pset_fletcher32_f(layout, status)
       call note(file, status)
       call h5pcreate_f(H5P_LINK_CREATE_F, links, status)
@@ -279,9 +281,9 @@ contains
       call note(file, status)
       if (status < 0) return
       call extent_of_set(set, rank, dims)
-      if (rank /= size(extent)) then
+      if (rank /= max(1, size(extent))) then
          file%good = .false.
-      else if (any(dims(:rank) /= extent)) then
+      else if (any(dims(:size(extent)) /= extent) .or. (size(extent) == 0 .and. dims(1) /= 1)) then
          file%good = .false.
       else
          place = values

@@ -241,18 +241,18 @@ contains
 
    !> One of them, with the friction that its step starts from. status: as of contact_evaluate.
    subroutine probe_one(t, x, with_tangent, aside, status)
-      type(contact_interface_t), intent(inout) :: t
+      type(contact_interface_t), intent(inout), target :: t
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
       logical, intent(in) :: with_tangent
       logical, intent(in) :: aside      !< The outcome goes to t%probe, not to t%result.
       type(contact_status_t), intent(out) :: status
+      type(contact_result_t), pointer :: outcome
       real(wp) :: at(2, size(t%master%x0, 2))
 
+      outcome => t%result
+      if (aside) outcome => t%probe
       if (allocated(t%spring)) then
-         if (aside) call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), &
-                                          displacements_of_master(t, x), t%probe)
-         if (.not. aside) call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), &
-                                                displacements_of_master(t, x), t%result)
+         call evaluate_springs(t%spring, x(:DISPLACEMENTS, t%slave%node), displacements_of_master(t, x), outcome)
          status = contact_status_t()
          return
       end if
@@ -265,13 +265,8 @@ contains
       else
          at = t%master%x0 + x(:DISPLACEMENTS, t%master%node)
       end if
-      if (aside) then
-         call contact_evaluate(t%geometry, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), at, with_tangent, t%work, &
-                               t%probe, status, t%friction)
-      else
-         call contact_evaluate(t%geometry, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), at, with_tangent, t%work, &
-                               t%result, status, t%friction)
-      end if
+      call contact_evaluate(t%geometry, t%slave%x0 + x(:DISPLACEMENTS, t%slave%node), at, with_tangent, t%work, &
+                            outcome, status, t%friction)
    end subroutine probe_one
 
    !> Displacements of the nodes of the master, or of the face of the plate [m].

@@ -152,14 +152,15 @@ contains
       if (status /= 0) call wrong(reader, 'the file ends early', fault)
    end subroutine next
 
-   !> The integers of the present line.
+   !> The integers of the next line.
    subroutine integers(reader, values, fault)
-      type(reader_t), intent(in) :: reader
+      type(reader_t), intent(inout) :: reader
       integer, intent(out) :: values(:)
       type(fault_t), intent(inout) :: fault
       integer :: status
 
       values = 0
+      call next(reader, fault)
       if (fault%code /= 0) return
       status = 1
       if (only_numbers(reader)) read (reader%text, *, iostat=status) values
@@ -207,7 +208,6 @@ contains
       type(physical_t) :: one
       integer :: head(1), i, status
 
-      call next(reader, fault)
       call integers(reader, head, fault)
       do i = 1, head(1)
          call next(reader, fault)
@@ -226,7 +226,6 @@ contains
       real(wp) :: box(6)
       integer :: counts(4), dimension, i, skip, tags, status
 
-      call next(reader, fault)
       call integers(reader, counts, fault)
       do dimension = 0, 3
          skip = merge(3, 6, dimension == 0)
@@ -257,7 +256,6 @@ contains
       integer :: head(4), block_head(4), b, i, used, status
       integer, allocatable :: tags(:)
 
-      call next(reader, fault)
       call integers(reader, head, fault)
       call check_announced(reader, 'the number of nodes', head(2), fault)
       call check_announced(reader, 'the largest node tag', head(4), fault)
@@ -268,7 +266,6 @@ contains
       allocate (number_of(head(4)), source=0)
       used = 0
       do b = 1, head(1)
-         call next(reader, fault)
          call integers(reader, block_head, fault)
          if (fault%code == 0 .and. (block_head(4) < 0 .or. block_head(4) > head(2) - used)) &
             call wrong(reader, 'more nodes than announced', fault)
@@ -276,7 +273,6 @@ contains
          if (allocated(tags)) deallocate (tags)
          allocate (tags(block_head(4)))
          do i = 1, size(tags)
-            call next(reader, fault)
             call integers(reader, tags(i:i), fault)
             if (fault%code == 0 .and. (tags(i) < 1 .or. tags(i) > head(4))) &
                call wrong(reader, 'a node tag is outside the announced range', fault)
@@ -306,12 +302,10 @@ contains
       integer :: head(4), block_head(4), b, i, n, used
       integer :: row(7)
 
-      call next(reader, fault)
       call integers(reader, head, fault)
       call check_announced(reader, 'the number of elements', head(2), fault)
       used = 0
       do b = 1, head(1)
-         call next(reader, fault)
          call integers(reader, block_head, fault)
          if (fault%code == 0 .and. (block_head(4) < 0 .or. block_head(4) > head(2) - used)) &
             call wrong(reader, 'more elements than announced', fault)
@@ -338,7 +332,6 @@ contains
          if (allocated(one%nodes)) deallocate (one%nodes)
          allocate (one%nodes(n, block_head(4)))
          do i = 1, block_head(4)
-            call next(reader, fault)
             call integers(reader, row(:n + 1), fault)
             if (fault%code /= 0) return
             if (any(row(2:n + 1) < 1 .or. row(2:n + 1) > size(number_of))) then

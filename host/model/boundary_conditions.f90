@@ -2,11 +2,9 @@
 !> What a step prescribes: displacements, pore pressures and air pressures at its end, and the masses of plates.
 module boundary_conditions
    use kinds, only: wp
-   use degrees_of_freedom, only: dofs_t
-   use generalised_alpha, only: scheme_t, has_rates
+   use generalised_alpha, only: scheme_t, make_scheme, has_rates
    use limited_pressures, only: begin_sides
-   use model_types, only: model_t, factor_at, fix_t, unknowns_of
-   use porous_domain, only: model_state_t
+   use model_types, only: model_t, problem_t, factor_at, fix_t, unknowns_of
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: acts_in, stage_t, PRESCRIBED_P_A
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
@@ -41,22 +39,21 @@ contains
       end do
    end function new_constraint
 
-   !> Prescribed values at the end of a step; x_start: unknowns at the start of the stage, which some are held at.
+   !> Prescribed values at the end of a step; some unknowns are held at what they were at the start of the stage.
    !> docs/theory/host.md sections 3.5, 7.1 and 7.7. Accelerations: see follow_accelerations.
-   subroutine constrain_step(model, stage, time, x_start, constraint)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      real(wp), intent(in) :: time, x_start(:, :)   !< At its end [s]; (FIELDS, nodes) [m, kPa].
-      type(constraint_t), intent(inout) :: constraint
-      integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i
-      real(wp) :: factors(size(model%fixes))
+   subroutine constrain_step(time, problem)
+      real(wp), intent(in) :: time   !< At its end [s].
+      type(problem_t), intent(inout) :: problem
+      integer :: by(problem%model%dofs%n), air_by(size(problem%model%domain%mesh%x, 2)), i
+      real(wp) :: factors(size(problem%model%fixes))
 
-      call prescribing_fixes(model, stage, constraint, time, by, air_by)
-      factors = [(factor_at(model, model%fixes(i)%amplitude, time), i=1, size(factors))]
-      constraint%fixed = by > 0
-      constraint%air = air_by > 0
-      constraint%limited = .false.
-      associate (z => model%domain%mesh%x(2, :), dofs => model%dofs)
+      call prescribing_fixes(problem, time, by, air_by)
+      associate (z => problem%model%domain%mesh%x(2, :), model => problem%model, dofs => problem%model%dofs, &
+                 constraint => problem%constraint, x_start => problem%at%x_start)
+         factors = [(factor_at(model, model%fixes(i)%amplitude, time), i=1, size(factors))]
+         constraint%fixed = by > 0
+         constraint%air = air_by > 0
+         constraint%limited = .false.
          do i = 1, size(by)
             if (by(i) == 0) cycle
             associate (fix => model%fixes(by(i)))
@@ -76,36 +73,35 @@ contains
 
    !> What follows from the prescribed values of supports and terms. Pressures with a limit begin on that side of it on
    !> which they stand at the start of the step.
-   subroutine complete_constraint(stage, dofs, x_start, x, constraint)
-      type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x_start(:, :), x(:, :)   !< (FIELDS, nodes) At the starts of stage and step [m, kPa].
-      type(constraint_t), intent(inout) :: constraint
+   subroutine complete_constraint(problem)
+      type(problem_t), intent(inout) :: problem
       integer :: i, node
 
-      ! Air pressure and one of the others: then the third is known too.
-      do node = 1, size(constraint%air)
-         if (.not. constraint%air(node)) cycle
-         associate (w => dofs%of(AT_P_W, node), c => dofs%of(AT_P_C, node))
-            if (constraint%fixed(c)) then
-               constraint%target(w) = constraint%air_target(node) - constraint%target(c)
-            else if (constraint%fixed(w)) then
-               constraint%target(c) = constraint%air_target(node) - constraint%target(w)
-            else
-               cycle
-            end if
-            constraint%fixed([w, c]) = .true.
-            constraint%air(node) = .false.
-         end associate
-      end do
-      call begin_sides(dofs, x, constraint)
-      if (has_rates(stage%kind)) return
-      do i = 1, dofs%n
-         if (dofs%field(i) <= DISPLACEMENTS) cycle
-         constraint%fixed(i) = .true.
-         constraint%target(i) = x_start(dofs%field(i), dofs%node(i))
-      end do
-      constraint%air = .false.
+      associate (dofs => problem%model%dofs, constraint => problem%constraint)
+         ! Air pressure and one of the others: then the third is known too.
+         do node = 1, size(constraint%air)
+            if (.not. constraint%air(node)) cycle
+            associate (w => dofs%of(AT_P_W, node), c => dofs%of(AT_P_C, node))
+               if (constraint%fixed(c)) then
+                  constraint%target(w) = constraint%air_target(node) - constraint%target(c)
+               else if (constraint%fixed(w)) then
+                  constraint%target(c) = constraint%air_target(node) - constraint%target(w)
+               else
+                  cycle
+               end if
+               constraint%fixed([w, c]) = .true.
+               constraint%air(node) = .false.
+            end associate
+         end do
+         call begin_sides(dofs, problem%state%x, constraint)
+         if (has_rates(problem%stage%kind)) return
+         do i = 1, dofs%n
+            if (dofs%field(i) <= DISPLACEMENTS) cycle
+            constraint%fixed(i) = .true.
+            constraint%target(i) = problem%at%x_start(dofs%field(i), dofs%node(i))
+         end do
+         constraint%air = .false.
+      end associate
    end subroutine complete_constraint
 
    !> Value of a &fix at a height z, its history the factor.
@@ -119,45 +115,42 @@ contains
    !> Displacements at the end of a step whose accelerations are prescribed: those that the scheme gives them, so that
    !> inertia is exact and free of the ringing that a prescribed displacement has. Accelerations of the scheme belong to
    !> the time (gamma - 1/2) dt before the end of the step. docs/theory/host.md section 7.5.
-   subroutine follow_accelerations(model, stage, scheme, state, constraint)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: state   !< Before the step.
-      type(constraint_t), intent(inout) :: constraint
-      integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i
+   subroutine follow_accelerations(problem)
+      type(problem_t), intent(inout) :: problem
+      integer :: by(problem%model%dofs%n), air_by(size(problem%model%domain%mesh%x, 2)), i
       real(wp) :: a
 
-      call prescribing_fixes(model, stage, constraint, state%time + scheme%dt, by, air_by)
-      do i = 1, size(by)
-         if (by(i) == 0) cycle
-         associate (fix => model%fixes(by(i)), f => model%dofs%field(i), node => model%dofs%node(i), dt => scheme%dt)
-            if (.not. fix%acceleration) cycle
-            constraint%target(i) = state%x(f, node)
-            if (.not. scheme%has_inertia) cycle
-            a = acceleration_at(model, fix, node, scheme, state%time + dt)
-            constraint%target(i) = state%x(f, node) + dt*state%v(f, node) &
-                                   + dt**2*((0.5_wp - scheme%beta)*state%a(f, node) + scheme%beta*a)
-         end associate
-      end do
+      associate (model => problem%model, scheme => problem%scheme, dt => problem%scheme%dt, state => problem%state)
+         call prescribing_fixes(problem, state%time + dt, by, air_by)
+         do i = 1, size(by)
+            if (by(i) == 0) cycle
+            associate (fix => model%fixes(by(i)), f => model%dofs%field(i), node => model%dofs%node(i), &
+                       target => problem%constraint%target(i))
+               if (.not. fix%acceleration) cycle
+               target = state%x(f, node)
+               if (.not. scheme%has_inertia) cycle
+               a = acceleration_at(model, fix, node, scheme, state%time + dt)
+               target = state%x(f, node) + dt*state%v(f, node) &
+                        + dt**2*((0.5_wp - scheme%beta)*state%a(f, node) + scheme%beta*a)
+            end associate
+         end do
+      end associate
    end subroutine follow_accelerations
 
    !> Accelerations that prescribed ones have when a stage begins; 0 elsewhere. docs/theory/host.md section 7.5.
-   subroutine starting_accelerations(model, stage, scheme, time, constraint)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(scheme_t), intent(in) :: scheme   !< Of the first step.
-      real(wp), intent(in) :: time   !< [s]
-      type(constraint_t), intent(inout) :: constraint
-      integer :: by(model%dofs%n), air_by(size(model%domain%mesh%x, 2)), i
+   subroutine starting_accelerations(problem)
+      type(problem_t), intent(inout) :: problem
+      type(scheme_t) :: scheme
+      integer :: by(problem%model%dofs%n), air_by(size(problem%model%domain%mesh%x, 2)), i
 
-      call prescribing_fixes(model, stage, constraint, time + scheme%dt, by, air_by)
-      constraint%acceleration = [(0.0_wp, i=1, size(by))]
+      scheme = make_scheme(problem%stage%kind, problem%stage%rho_inf, problem%stage%dt)
+      call prescribing_fixes(problem, problem%state%time + scheme%dt, by, air_by)
+      problem%constraint%acceleration = [(0.0_wp, i=1, size(by))]
       do i = 1, size(by)
          if (by(i) == 0) cycle
-         associate (fix => model%fixes(by(i)))
-            if (fix%acceleration) constraint%acceleration(i) = &
-               acceleration_at(model, fix, model%dofs%node(i), scheme, time)
+         associate (fix => problem%model%fixes(by(i)))
+            if (fix%acceleration) problem%constraint%acceleration(i) = &
+               acceleration_at(problem%model, fix, problem%model%dofs%node(i), scheme, problem%state%time)
          end associate
       end do
    end subroutine starting_accelerations
@@ -185,23 +178,21 @@ contains
 
    !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:
    !> none. The last one counts.
-   subroutine prescribing_fixes(model, stage, constraint, time, by, air_by)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(constraint_t), intent(in) :: constraint
+   subroutine prescribing_fixes(problem, time, by, air_by)
+      type(problem_t), intent(in) :: problem
       real(wp), intent(in) :: time   !< At the end of a step [s].
       integer, intent(out) :: by(:), air_by(:)   !< (unknowns), (nodes)
       integer :: i, k, node, at
 
       by = 0
       air_by = 0
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i))
-            if (.not. acts(fix, stage, time) .or. fix%limits) cycle
-            do k = 1, size(model%domain%mesh%groups(fix%group)%nodes)
-               node = model%domain%mesh%groups(fix%group)%nodes(k)
-               if (is_released(constraint, i, node)) cycle
-               at = model%dofs%of(min(fix%field, AT_P_C), node)
+      do i = 1, size(problem%model%fixes)
+         associate (fix => problem%model%fixes(i), groups => problem%model%domain%mesh%groups)
+            if (.not. acts(fix, problem%stage, time) .or. fix%limits) cycle
+            do k = 1, size(groups(fix%group)%nodes)
+               node = groups(fix%group)%nodes(k)
+               if (is_released(problem%constraint, i, node)) cycle
+               at = problem%model%dofs%of(min(fix%field, AT_P_C), node)
                if (at == 0) cycle
                if (fix%field == PRESCRIBED_P_A) air_by(node) = i
                if (fix%field /= PRESCRIBED_P_A) by(at) = i

@@ -30,9 +30,9 @@ contains
       integer :: i, at
 
       at = size(model%contacts)
-      if (at + count(is_tied(model%plates)) == 0) return
+      if (at == 0 .and. .not. any(model%plates%penalty > 0.0_wp)) return
       allocate (built)
-      allocate (built%interfaces(at + count(is_tied(model%plates))))
+      allocate (built%interfaces(at + count(model%plates%penalty > 0.0_wp)))
       associate (mesh => model%domain%mesh)
          do i = 1, size(model%contacts)
             associate (one => model%contacts(i))
@@ -54,7 +54,7 @@ contains
          ! Behind the contacts, what springs tie to a plate.
          do i = 1, size(model%plates)
             associate (plate => model%plates(i))
-               if (.not. is_tied(plate)) cycle
+               if (.not. plate%penalty > 0.0_wp) cycle
                at = at + 1
                call tie_to_plate(model%dofs, surface_of(mesh%groups(plate%group)%edges, mesh%x), link_of(plate), &
                                  plate%penalty, built%interfaces(at))
@@ -63,13 +63,6 @@ contains
       end associate
       call move_alloc(built, contacts)
    end subroutine prepare_contacts
-
-   !> Whether springs tie a boundary to a plate.
-   elemental logical function is_tied(plate)
-      type(plate_t), intent(in) :: plate
-
-      is_tied = plate%penalty > 0.0_wp
-   end function is_tied
 
    !> A plate as contacts know it.
    type(plate_link_t) function link_of(plate) result(link)

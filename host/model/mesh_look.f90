@@ -19,15 +19,11 @@ contains
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
       logical :: carried(size(model%domain%mesh%x, 2))
-      integer :: e, i
+      integer :: i
 
       carried = .false.
-      do e = 1, size(model%domain%mesh%t6, 2)
-         carried(model%domain%mesh%t6(:, e)) = .true.
-      end do
-      do e = 1, size(model%domain%bodies)
-         carried(model%domain%bodies(e)) = .true.
-      end do
+      carried(reshape(model%domain%mesh%t6, [size(model%domain%mesh%t6)])) = .true.
+      carried(model%domain%bodies) = .true.
       do i = 1, size(model%actions)
          if (model%actions(i)%group > 0) call look(model%actions(i))
       end do

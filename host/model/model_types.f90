@@ -22,7 +22,7 @@ module model_types
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
-   public :: model_t, term_t, term_box_t, factor_at, gravity_at, unknowns_of
+   public :: model_t, problem_t, term_t, term_box_t, factor_at, gravity_at, unknowns_of, share_over
    public :: action_t, acting_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, &
              given_region_t, curve_t, mesh_source_t
 
@@ -187,6 +187,12 @@ module model_types
       type(solver_t) :: solver
    end type model_t
 
+   !> A model and the solution of its steps.
+   type, extends(solution_t) :: problem_t
+      type(model_t), pointer :: model => null()
+      type(stage_t), pointer :: stage => null()   !< Stage of the model that is under way.
+   end type problem_t
+
    type, abstract :: term_t
    contains
       procedure :: begin_run, begin_stage, before_step, prescribe, complete, accept, exchange, remark
@@ -224,59 +230,62 @@ contains
       gravity_at = factor_at(model, model%gravity_amplitude, time)*model%domain%gravity
    end function gravity_at
 
+   !> Share of the stage under way that is over at a time. [-]
+   pure real(wp) function share_over(problem, time) result(share)
+      class(problem_t), intent(in) :: problem
+      real(wp), intent(in) :: time   !< [s]
+
+      share = min(1.0_wp, max(0.0_wp, (time - problem%at%t_start)/problem%stage%duration))
+   end function share_over
+
    !> The start of a run, with its initial state.
-   subroutine begin_run(self, model, solution, fault)
+   subroutine begin_run(self, problem, fault)
       class(term_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
    end subroutine begin_run
 
    !> The start of the stage solution%at%stage, from solution%state; also where a run is taken up within the stage.
-   subroutine begin_stage(self, model, begins, solution, fault)
+   subroutine begin_stage(self, begins, problem, fault)
       class(term_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       logical, intent(in) :: begins   !< Else the run is in the middle of it.
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
    end subroutine begin_stage
 
    !> Before an attempt at a step of length dt from solution%state to solution%next; of length 0 where a stage begins.
    !> solution%constraint has the loads of the scene and of terms before this one in the registry.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(term_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt   !< [s]
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
    end subroutine before_step
 
    !> Behind the supports of the scene: values at the end of the step that the term prescribes or limits.
-   subroutine prescribe(self, model, time, solution)
+   subroutine prescribe(self, time, problem)
       class(term_t), intent(in) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: time   !< At the end of the step [s].
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
    end subroutine prescribe
 
    !> After a step that Newton's method has solved: values of solution%next that follow from its unknowns.
-   subroutine complete(self, model, solution)
+   subroutine complete(self, problem)
       class(term_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
    end subroutine complete
 
    !> After an accepted step, booked and not yet taken over. Energies [kJ] of the step grow by what the term dissipated.
-   subroutine accept(self, solution, dissipated)
+   subroutine accept(self, problem, dissipated)
       class(term_t), intent(inout) :: self
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       real(wp), intent(inout) :: dissipated   !< [kJ]
    end subroutine accept
 
    !> What the term keeps from step to step, and does not find again from the scene.
-   subroutine exchange(self, solution, archive)
+   subroutine exchange(self, problem, archive)
       class(term_t), intent(inout) :: self
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       class(archive_t), intent(inout) :: archive
    end subroutine exchange
 

@@ -33,9 +33,7 @@ contains
 
       associate (mesh => m%mesh)
          in_ground = .false.
-         do e = 1, size(mesh%t6, 2)
-            in_ground(mesh%t6(:, e)) = .true.
-         end do
+         in_ground(reshape(mesh%t6, [size(mesh%t6)])) = .true.
          distance = [(norm2(mesh%x(:, i) - point%x), i=1, size(distance))]
          node = minloc(distance, 1, mask=in_ground)
          e = 0

@@ -187,7 +187,7 @@ contains
       real(wp), allocatable :: times(:), values(:)
       integer, allocatable :: arcs(:)
       real(wp) :: start, length
-      integer :: i, s, n
+      integer :: i, s, n, first
 
       named = [(any(h%stages == stages(s)%name), s=1, size(named))]
       n = size(h%times)
@@ -203,24 +203,21 @@ contains
          if (.not. named(s)) cycle
          start = sum(stages(:s - 1)%duration)
          i = size(times)
-         if (i == 0) then
-            times = start + h%times
-            values = h%values
-            arcs = h%arcs
-         else if (start + h%times(1) < times(i) - ROUNDING*length) then
-            call raise(fault, EXIT_INPUT, place_of(h)//'history '''//trim(h%name)//''' lasts up to '// &
-                       short(times(i))//' s, and begins anew at '//short(start + h%times(1))//' s with stage '// &
-                       trim(stages(s)%name)//': shorten it, or lengthen the stage before.')
-            return
-         else if (start + h%times(1) <= times(i) + ROUNDING*length) then
-            times = [times, start + h%times(2:)]
-            values = [values, h%values(2:)]
-            arcs = [arcs, h%arcs]
-         else
-            times = [times, start + h%times]
-            values = [values, h%values]
-            arcs = [arcs, spread(0, 1, min(1, size(h%arcs))), h%arcs]
+         first = 1
+         if (i > 0) then
+            if (start + h%times(1) < times(i) - ROUNDING*length) then
+               call raise(fault, EXIT_INPUT, place_of(h)//'history '''//trim(h%name)//''' lasts up to '// &
+                          short(times(i))//' s, and begins anew at '//short(start + h%times(1))//' s with stage '// &
+                          trim(stages(s)%name)//': shorten it, or lengthen the stage before.')
+               return
+            end if
+            ! Where it begins anew at once the last pair is the first one.
+            if (start + h%times(1) <= times(i) + ROUNDING*length) first = 2
+            if (first == 1 .and. size(h%arcs) > 0) arcs = [arcs, 0]
          end if
+         times = [times, start + h%times(first:)]
+         values = [values, h%values(first:)]
+         arcs = [arcs, h%arcs]
       end do
       call move_alloc(times, h%times)
       call move_alloc(values, h%values)
@@ -236,10 +233,7 @@ contains
 
       do i = 1, size(model%stages)
          associate (stage => model%stages(i))
-            touching = .false.
-            do k = 1, size(model%contacts)
-               touching = touching .or. acts_in(model%contacts(k)%stages, stage%name)
-            end do
+            touching = any([(acts_in(model%contacts(k)%stages, stage%name), k=1, size(model%contacts))])
             stage%measure = measure_in(stage%measure, has_inertia(stage%kind), touching)
             if (stage%rho_inf >= 0.0_wp) cycle
             stage%rho_inf = SMOOTH

@@ -131,7 +131,7 @@ contains
          integer :: by(run%model%dofs%n), air_by(size(run%model%domain%mesh%x, 2)), i, k, group(2)
          real(wp) :: w, a
 
-         call prescribing_fixes(run%model, run%stage, run%constraint, run%state%time, by, air_by)
+         call prescribing_fixes(run%problem_t, run%state%time, by, air_by)
          sums(:DISPLACEMENTS, :) = forces_of_supports(run%model, by, run%system%reaction)
          associate (dofs => run%model%dofs, constraint => run%constraint, reaction => run%system%reaction)
             if (.not. run%scheme%has_rates .or. .not. run%model%domain%with_w) return

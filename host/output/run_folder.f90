@@ -18,6 +18,7 @@ module run_folder
 
    type, extends(observer_t) :: folder_observer_t
       character(FINGERPRINT_LENGTH) :: origin = ''   !< Fingerprint of the scene that began the run.
+      logical :: taken = .false.                     !< The file LOCK is ours.
    contains
       procedure :: exchange
       procedure :: fits
@@ -71,7 +72,8 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (run%steps == 0) self%origin = run%model%origin%fingerprint
-      call lock_folder(self%folder, run%steps == 0, fault)
+      if (run%steps == 0) call make_folder(self%folder)
+      call lock_folder(self%folder, self%taken, fault)
    end subroutine begins
 
    !> Gives the folder free.
@@ -80,22 +82,23 @@ contains
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      call unlock_folder(self%folder)
+      if (self%taken) call remove_lock(self%folder)
    end subroutine ends
 
    !> Takes a folder; nothing is done where there is none. Fault EXIT_OUTPUT: another run writes to it.
-   subroutine lock_folder(folder, make, fault)
+   subroutine lock_folder(folder, taken, fault)
       character(*), intent(in) :: folder
-      logical, intent(in) :: make   !< The folder.
+      logical, intent(out) :: taken
       type(fault_t), intent(inout) :: fault
       character(NAME_LENGTH) :: host
       integer :: unit, status, i
       integer(c_int) :: owner
 
-      if (make) call make_folder(folder)
+      taken = .false.
       do i = 1, ATTEMPTS
          open (newunit=unit, file=folder//'/'//LOCK, status='new', action='write', iostat=status)
-         if (status == 0) then
+         taken = status == 0
+         if (taken) then
             write (unit, '(i0,1x,a)') getpid(), this_host()
             close (unit)
             return
@@ -155,21 +158,6 @@ contains
       close (unit)
       if (problem /= 0) status = -1
    end subroutine read_lock
-
-   !> Gives the folder free, if it is ours.
-   subroutine unlock_folder(folder)
-      character(*), intent(in) :: folder
-      character(NAME_LENGTH) :: host
-      character(:), allocatable :: here
-      integer :: status
-      integer(c_int) :: owner, own
-
-      call read_lock(folder, owner, host, status)
-      if (status /= 0) return
-      here = this_host()
-      own = getpid()
-      if (owner == own .and. host == here) call remove_lock(folder)
-   end subroutine unlock_folder
 
    subroutine remove_lock(folder)
       character(*), intent(in) :: folder

@@ -37,7 +37,7 @@ contains
       if (fault%code == 0) call place_heavy_plates(model, run%state)
       run%terms = model%terms
       do i = 1, size(run%terms)
-         if (fault%code == 0) call run%terms(i)%term%begin_run(model, run%solution_t, fault)
+         if (fault%code == 0) call run%terms(i)%term%begin_run(run%problem_t, fault)
       end do
       run%next = run%state
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(run, fault)

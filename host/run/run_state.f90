@@ -6,10 +6,10 @@ module run_state
    use kinds, only: wp
    use control_state, only: control_state_t, new_control_state, exchange_control
    use start_findings, only: tension_t
-   use model_types, only: model_t, term_box_t, gravity_at
+   use model_types, only: problem_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
-   use scene_parts, only: stage_t, acts_in
-   use solution, only: solution_t, stage_state_t
+   use scene_parts, only: acts_in
+   use solution, only: stage_state_t
    use sparsity_pattern, only: make_pattern
    use texts, only: short
    implicit none (type, external)
@@ -24,9 +24,7 @@ module run_state
       real(wp) :: contact_work = 0.0_wp    !< Work done on contacts so far [kJ], set by the ledger, which stands first.
    end type news_t
 
-   type, extends(solution_t) :: run_t
-      type(model_t), pointer :: model => null()   !< Model that is run.
-      type(stage_t), pointer :: stage => null()   !< Stage under way, one of the model's.
+   type, extends(problem_t) :: run_t
       type(term_box_t), allocatable :: terms(:)   !< Terms of the model, with what they keep from step to step.
       type(tension_t) :: tension               !< Tension in the initial state, for a warning.
       type(control_state_t) :: control         !< Control of the time step, in stages that choose it.
@@ -73,7 +71,7 @@ contains
       call exchange_state(run%model%domain, run%state, archive)
       call archive%exchange('largest', run%system%largest, 'kN', 'largest scale of every field')
       do i = 1, size(run%terms)
-         call run%terms(i)%term%exchange(run%solution_t, archive)
+         call run%terms(i)%term%exchange(run%problem_t, archive)
       end do
       if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
                                                            size(run%model%contacts))

@@ -6,8 +6,8 @@ module step_attempt
    use faults, only: fault_t
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
    use boundary_loads, only: load_at
-   use generalised_alpha, only: make_scheme, has_rates, has_inertia
-   use model_types, only: gravity_at
+   use generalised_alpha, only: has_rates, has_inertia
+   use model_types, only: gravity_at, share_over
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
    use porous_domain, only: copy_state
@@ -36,7 +36,7 @@ contains
          if (begins) run%at = stage_state_t(stage=run%at%stage, t_start=run%state%time, nominal=stage%dt, &
                                             x_start=run%state%x)
          do i = 1, size(run%terms)
-            if (fault%code == 0) call run%terms(i)%term%begin_stage(run%model, begins, run%solution_t, fault)
+            if (fault%code == 0) call run%terms(i)%term%begin_stage(begins, run%problem_t, fault)
          end do
          if (fault%code /= 0 .or. .not. begins) return
          run%system%factored = .false.
@@ -71,8 +71,7 @@ contains
       if (fault%code /= 0) return
       call prepare_rates(dt, run)
       run%scheme = scheme_of(run, dt)
-      if (any(run%model%fixes%acceleration)) call follow_accelerations(run%model, run%stage, run%scheme, run%state, &
-                                                                       run%constraint)
+      if (any(run%model%fixes%acceleration)) call follow_accelerations(run%problem_t)
       call take_step(run%model%domain, run%model%dofs, run%solution_t)
       if (run%log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
@@ -88,7 +87,7 @@ contains
          call judge_step(run, accepted)
          if (.not. accepted) run%assembly%slopes%known = .false.
          do i = 1, size(run%terms)
-            call run%terms(i)%term%complete(run%model, run%solution_t)
+            call run%terms(i)%term%complete(run%problem_t)
          end do
          return
       end if
@@ -146,27 +145,26 @@ contains
          c%load_0 = load_at(run%model, run%stage, run%state%time)
          c%load_1 = load_at(run%model, run%stage, until)
          do i = 1, size(run%terms)
-            if (fault%code == 0) call run%terms(i)%term%before_step(run%model, dt, run%solution_t, fault)
+            if (fault%code == 0) call run%terms(i)%term%before_step(dt, run%problem_t, fault)
          end do
          if (fault%code /= 0) return
          if (allocated(run%at%sudden)) then
-            c%load_0 = c%load_0 - (1 - run%at%share_of(run%stage%duration, run%state%time))*run%at%sudden
-            c%load_1 = c%load_1 - (1 - run%at%share_of(run%stage%duration, until))*run%at%sudden
+            c%load_0 = c%load_0 - (1 - share_over(run, run%state%time))*run%at%sudden
+            c%load_1 = c%load_1 - (1 - share_over(run, until))*run%at%sudden
          end if
       end associate
-      call constrain_step(run%model, run%stage, run%state%time + dt, run%at%x_start, run%constraint)
+      call constrain_step(run%state%time + dt, run%problem_t)
       do i = 1, size(run%terms)
-         call run%terms(i)%term%prescribe(run%model, run%state%time + dt, run%solution_t)
+         call run%terms(i)%term%prescribe(run%state%time + dt, run%problem_t)
       end do
-      call complete_constraint(run%stage, run%model%dofs, run%at%x_start, run%state%x, run%constraint)
+      call complete_constraint(run%problem_t)
    end subroutine set_step
 
    subroutine first_accelerations(run, fault)
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (any(run%model%fixes%acceleration)) call starting_accelerations(run%model, run%stage, &
-         make_scheme(run%stage%kind, run%stage%rho_inf, run%stage%dt), run%state%time, run%constraint)
+      if (any(run%model%fixes%acceleration)) call starting_accelerations(run%problem_t)
       call start_accelerations(run%model%domain, run%model%dofs, run%solution_t)
       if (run%log%outcome /= CONVERGED) call explain_failure(run, 0.0_wp, fault)
    end subroutine first_accelerations

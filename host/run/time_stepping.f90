@@ -89,7 +89,7 @@ contains
          call observers%tell(STEP, run, verdict)
          run%dissipated = 0.0_wp
          do i = 1, size(run%terms)
-            call run%terms(i)%term%accept(run%solution_t, run%dissipated)
+            call run%terms(i)%term%accept(run%problem_t, run%dissipated)
          end do
          call keep_step(run)
          call take_over(run%next, run%state)

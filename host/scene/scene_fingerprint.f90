@@ -3,6 +3,7 @@
 !> Comments, spaces and what changes no result take no part.
 module scene_fingerprint
    use, intrinsic :: iso_fortran_env, only: int64
+   use files, only: read_whole
    use namelists, only: group_t
    use scene_parts, only: FINGERPRINT_LENGTH
    use texts, only: lower_case
@@ -10,7 +11,6 @@ module scene_fingerprint
    private
    public :: fingerprint_of, hashes_of
 
-   integer, parameter :: BLOCK = 65536
    ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
    integer(int64), parameter :: PRIMES(2) = [2147483647_int64, 2147483629_int64], BASES(2) = [65599_int64, 31337_int64]
    !> Keys that change no result.
@@ -72,22 +72,12 @@ contains
    subroutine add_file(scene, path, hash)
       character(*), intent(in) :: scene, path
       integer(int64), intent(inout) :: hash(2)
-      character(:), allocatable :: whole_path
-      character(BLOCK) :: block_of
-      integer :: unit, status, length, left
+      character(:), allocatable :: place, contents
+      logical :: good
 
-      whole_path = path
-      if (path(1:1) /= '/') whole_path = scene(:index(scene, '/', back=.true.))//path
-      open (newunit=unit, file=whole_path, access='stream', form='unformatted', status='old', action='read', &
-            iostat=status)
-      if (status /= 0) return
-      inquire (unit=unit, size=length)
-      left = length
-      do while (left > 0 .and. status == 0)
-         read (unit, iostat=status) block_of(:min(left, BLOCK))
-         if (status == 0) call add_text(block_of(:min(left, BLOCK)), hash)
-         left = left - BLOCK
-      end do
-      close (unit)
+      place = path
+      if (path(1:1) /= '/') place = scene(:index(scene, '/', back=.true.))//path
+      call read_whole(place, contents, good)
+      if (good) call add_text(contents, hash)
    end subroutine add_file
 end module scene_fingerprint

@@ -11,7 +11,7 @@ module idle_keys
    use porous_domain, only: COUPLED
    use scene_keys, only: keys_of_scenes
    use scene_types, only: scene_t
-   use texts, only: lower_case, LENGTH
+   use texts, only: LENGTH
    use warnings, only: print_warning
    implicit none (type, external)
    private
@@ -116,11 +116,10 @@ contains
    pure function name_of(group) result(name)
       type(group_t), intent(in) :: group
       character(:), allocatable :: name
-      integer :: i
+      character(LENGTH) :: text
 
-      name = ''
-      do i = 1, group%count
-         if (lower_case(group%entries(i)%key) == 'name') name = trim(group%entries(i)%values(1))
-      end do
+      text = ''
+      call get_text(group, 'name', text)
+      name = trim(text)
    end function name_of
 end module idle_keys

@@ -8,12 +8,11 @@ module scene_warnings
    use idle_keys, only: warn_of_idle_keys
    use warnings, only: print_warning
    use start_findings, only: tension_t, balance_t
-   use key_schema, only: line_of, given, get_number
+   use key_schema, only: line_of, get_number
    use material_elastic, only: elastic_t
    use material_point, only: untested
    use mesh_look, only: look_at_slits
    use model_types, only: model_t
-   use namelists, only: group_t
    use scene_parts, only: place_of
    use scene_types, only: scene_t
    use start_look, only: warn_of_start
@@ -63,9 +62,7 @@ contains
       call look_at_sizes(scene, model)
       call look_at_slits(model)
       call look_at_units(scene)
-      call look_at_regions(model)
-      call look_at_materials(model)
-      call look_at_uses(model, tension)
+      call look_at_regions(model, tension)
       call look_at_initials(model, tension)
       call warn_of_start(model, balance)
       call warn_of_boundaries(model)
@@ -78,6 +75,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       real(wp) :: size_of, k
+      logical :: found
       integer :: i
 
       size_of = extent(model%domain%mesh)
@@ -91,19 +89,12 @@ contains
       do i = 1, size(scene%as_read)
          associate (group => scene%as_read(i))
             if (group%name /= 'permeability') cycle
-            k = value_of(group, 'intrinsic')
+            k = 0.0_wp
+            call get_number(group, 'intrinsic', k, found)
             if (k > PERMEABLE) call print_warning(at_line(group%file, line_of(group, 'intrinsic'))//'intrinsic = '// &
                short(k)//' m2 is more than coarse gravel has; a conductivity [m/s] is k rho_w g/eta_w, about 1e7 '// &
                'times the permeability k [m2].')
          end associate
-      end do
-      do i = 1, size(model%domain%regions)
-         select type (law => model%domain%regions(i)%law)
-         type is (elastic_t)
-            if (law%young > STIFF) call print_warning(place_of(model%regions(i))//'material '''// &
-               trim(model%regions(i)%material_name)//''' has young = '//short(law%young)//' kPa, more than any '// &
-               'soil or metal; moduli are in kPa.')
-         end select
       end do
    contains
       function remedy() result(text)
@@ -114,28 +105,19 @@ contains
       end function remedy
    end subroutine look_at_sizes
 
-   !> Value of a key that a group gives.
-   real(wp) function value_of(group, key) result(value)
-      type(group_t), intent(in) :: group
-      character(*), intent(in) :: key
-      logical :: found
-
-      value = 0.0_wp
-      call get_number(group, key, value, found)
-   end function value_of
-
    !> Fluids and grains that seem to have another unit.
    subroutine look_at_units(scene)
       type(scene_t), intent(in) :: scene
       real(wp) :: value
+      logical :: found
       integer :: g, k
 
       do g = 1, size(scene%as_read)
          associate (group => scene%as_read(g))
             if (group%name /= 'fluids' .and. group%name /= 'region') cycle
             do k = 1, size(USUAL)
-               if (.not. given(group, trim(USUAL(k)%key))) cycle
-               value = value_of(group, trim(USUAL(k)%key))
+               call get_number(group, trim(USUAL(k)%key), value, found)
+               if (.not. found) cycle
                if (value >= USUAL(k)%lower .and. (value <= USUAL(k)%upper .or. value >= USUAL(k)%beyond)) cycle
                call print_warning(at_line(group%file, line_of(group, trim(USUAL(k)%key)))//trim(USUAL(k)%key)//' = '// &
                   short(value)//' of &'//trim(group%name)//' is unusual for '//trim(USUAL(k)%say)//'; scenes are '// &
@@ -145,50 +127,36 @@ contains
       end do
    end subroutine look_at_units
 
-   !> Regions without an element.
-   subroutine look_at_regions(model)
+   !> Regions without an element, too stiff, or whose law is used outside the tests behind it, where a few points at low
+   !> stress, as below a surface, are none. What laws say of their parameters, and laws in another unit of stress: each
+   !> material once.
+   subroutine look_at_regions(model, tension)
       type(model_t), intent(in) :: model
+      type(tension_t), intent(in) :: tension
+      character(:), allocatable :: place
       integer :: i
 
       do i = 1, size(model%regions)
-         if (any(model%domain%region_of == i)) cycle
-         call print_warning(place_of(model%regions(i))//'the region '''//trim(model%regions(i)%group_name)// &
-            ''' has no element'//trim(merge(': other regions name them all.', '.                             ', &
-            model%regions(i)%rest)))
-      end do
-   end subroutine look_at_regions
-
-   !> What laws say of their parameters, and laws in another unit of stress: each material once.
-   subroutine look_at_materials(model)
-      type(model_t), intent(in) :: model
-      integer :: i
-
-      do i = 1, size(model%domain%regions)
-         associate (given => model%regions(i), law => model%domain%regions(i)%law)
+         associate (given => model%regions(i), law => model%domain%regions(i)%law, used => tension%uses(i))
+            place = place_of(given)//'material '''//trim(given%material_name)//''''
+            if (.not. any(model%domain%region_of == i)) call print_warning(place_of(given)//'the region '''// &
+               trim(given%group_name)//''' has no element'//trim(merge(': other regions name them all.', &
+                                                                       '.                             ', given%rest)))
+            select type (law)
+            type is (elastic_t)
+               if (law%young > STIFF) call print_warning(place//' has young = '//short(law%young)//' kPa, more '// &
+                  'than any soil or metal; moduli are in kPa.')
+            end select
+            if (used%outside_e > 0 .or. used%outside_p > FEW*used%points) call print_warning(place//' begins '// &
+               'outside what it was fitted to at '//whole(max(used%outside_e, used%outside_p))//' of '// &
+               whole(used%points)//' points: '//untested(law, used%e, used%p)//'.')
             if (any(model%regions(:i - 1)%material_name == given%material_name)) cycle
             if (law%doubt /= '') call print_warning(trim(law%doubt))
-            if (law%unit%name /= KILOPASCAL%name) call print_warning(place_of(given)//'material '''// &
-               trim(given%material_name)//''' has a p_atm of '//short(ATMOSPHERE*law%unit%factor)//'; scenes are '// &
-               'in kPa, in which it is about '//short(ATMOSPHERE)//'.')
+            if (law%unit%name /= KILOPASCAL%name) call print_warning(place//' has a p_atm of '// &
+               short(ATMOSPHERE*law%unit%factor)//'; scenes are in kPa, in which it is about '//short(ATMOSPHERE)//'.')
          end associate
       end do
-   end subroutine look_at_materials
-
-   !> Laws that are used outside the tests behind them. A few points at low stress, as below a surface, are none.
-   subroutine look_at_uses(model, tension)
-      type(model_t), intent(in) :: model
-      type(tension_t), intent(in) :: tension
-      integer :: i
-
-      do i = 1, size(tension%uses)
-         associate (used => tension%uses(i), law => model%domain%regions(i)%law)
-            if (used%outside_e == 0 .and. used%outside_p <= FEW*used%points) cycle
-            call print_warning(place_of(model%regions(i))//'material '''//trim(model%regions(i)%material_name)// &
-               ''' begins outside what it was fitted to at '//whole(max(used%outside_e, used%outside_p))//' of '// &
-               whole(used%points)//' points: '//untested(law, used%e, used%p)//'.')
-         end associate
-      end do
-   end subroutine look_at_uses
+   end subroutine look_at_regions
 
    !> Largest side of the box around the elements [m].
    pure real(wp) function extent(mesh)

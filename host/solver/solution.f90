@@ -25,8 +25,6 @@ module solution
       real(wp), allocatable :: x_start(:, :)   !< Unknowns at its start, which some boundaries hold.
       !> (unknowns) What acted at once at the start and is applied evenly over the stage; not allocated: nothing [kN].
       real(wp), allocatable :: sudden(:)
-   contains
-      procedure :: share_of
    end type stage_state_t
 
    type :: solution_t
@@ -41,12 +39,4 @@ module solution
       type(control_t) :: newton                !< Limits of Newton's method.
       type(log_t) :: log                       !< Log of Newton's method.
    end type solution_t
-contains
-   !> Share of the stage that is over at a time. [-]
-   pure real(wp) function share_of(self, duration, time) result(share)
-      class(stage_state_t), intent(in) :: self
-      real(wp), intent(in) :: duration, time   !< Duration of the stage, and the time [s].
-
-      share = min(1.0_wp, max(0.0_wp, (time - self%t_start)/duration))
-   end function share_of
 end module solution

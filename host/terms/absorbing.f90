@@ -17,14 +17,13 @@ module absorbing
    use kinds, only: wp
    use linear_forces, only: linear_forces_t
    use material_point, only: response_t, batch_report_t
-   use model_types, only: model_t, action_t, factor_at
+   use model_types, only: model_t, problem_t, action_t, factor_at
    use name_search, only: mesh_group, history_named
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: model_state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
-   use solution, only: solution_t
    use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -97,19 +96,18 @@ contains
 
    !> Dashpots of the boundaries. docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: the ground has no stiffness, or
    !> its material refuses.
-   subroutine begin_run(self, model, solution, fault)
+   subroutine begin_run(self, problem, fault)
       class(absorbing_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       type(linear_forces_t) :: dashpots
       integer :: i
 
       do i = 1, size(self%sides)
          if (fault%code /= 0) return
-         call prepare_side(model, self%sides(i), solution%state, dashpots, fault)
-         solution%constraint%linear = [solution%constraint%linear, dashpots]
-         self%sides(i)%dashpots = size(solution%constraint%linear)
+         call prepare_side(problem%model, self%sides(i), problem%state, dashpots, fault)
+         problem%constraint%linear = [problem%constraint%linear, dashpots]
+         self%sides(i)%dashpots = size(problem%constraint%linear)
       end do
    end subroutine begin_run
 
@@ -313,43 +311,41 @@ contains
    end subroutine add_edge
 
    !> Sides that no longer act are freed of the forces that they held.
-   subroutine begin_stage(self, model, begins, solution, fault)
+   subroutine begin_stage(self, begins, problem, fault)
       class(absorbing_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       logical, intent(in) :: begins
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       integer :: i
 
       self%at_start = begins
       if (.not. begins) return
       do i = 1, size(self%sides)
-         associate (side => self%sides(i), number => solution%at%stage)
-            if (acts(side, model, number - 1) .and. .not. acts(side, model, number)) &
-               where (side%held) solution%constraint%offset = 0.0_wp
+         associate (side => self%sides(i), number => problem%at%stage)
+            if (acts(side, problem%model, number - 1) .and. .not. acts(side, problem%model, number)) &
+               where (side%held) problem%constraint%offset = 0.0_wp
          end associate
       end do
    end subroutine begin_stage
 
    !> Which sides act, and the forces of the waves that come in. Where a stage begins those that have not acted before
    !> hold what the ground behind them has held so far.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(absorbing_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      if (self%at_start) call hold_ground(self, model, solution, fault)
+      if (self%at_start) call hold_ground(self, problem, fault)
       self%at_start = .false.
-      associate (c => solution%constraint, now => solution%state%time)
+      associate (c => problem%constraint, now => problem%state%time)
          do i = 1, size(self%sides)
             associate (side => self%sides(i))
-               c%linear(side%dashpots)%acts = acts(side, model, solution%at%stage)
+               c%linear(side%dashpots)%acts = acts(side, problem%model, problem%at%stage)
                if (.not. c%linear(side%dashpots)%acts) cycle
-               c%load_0 = c%load_0 + factor_at(model, side%amplitude, now)*side%incoming
-               c%load_1 = c%load_1 + factor_at(model, side%amplitude, now + dt)*side%incoming
+               c%load_0 = c%load_0 + factor_at(problem%model, side%amplitude, now)*side%incoming
+               c%load_1 = c%load_1 + factor_at(problem%model, side%amplitude, now + dt)*side%incoming
             end associate
          end do
       end associate
@@ -367,44 +363,43 @@ contains
 
    !> Sets the forces on sides that act in a stage and did not in the one before. docs/theory/host.md section 7.4. Fault
    !> EXIT_MATERIAL: a material refuses its own state at rest.
-   subroutine hold_ground(self, model, solution, fault)
+   subroutine hold_ground(self, problem, fault)
       class(absorbing_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       logical :: begin_to_act(size(self%sides))
       real(wp), allocatable :: missing(:)
       integer :: i
 
-      associate (number => solution%at%stage)
-         begin_to_act = [(acts(self%sides(i), model, number) .and. .not. acts(self%sides(i), model, number - 1), &
-                          i=1, size(begin_to_act))]
+      associate (number => problem%at%stage)
+         begin_to_act = [(acts(self%sides(i), problem%model, number) .and. &
+                          .not. acts(self%sides(i), problem%model, number - 1), i=1, size(begin_to_act))]
          if (.not. any(begin_to_act)) return
-         call copy_state(solution%state, solution%next)
-         solution%next%v = 0.0_wp
-         solution%next%a = 0.0_wp
-         solution%assembly%air = .false.
-         call assemble(model%domain, model%dofs, solution%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), &
-                       solution%state, solution%next, .false., solution%assembly)
-         if (solution%assembly%bad_element > 0) then
-            call raise(fault, EXIT_MATERIAL, 'Stage '//trim(model%stages(number)%name)//': the material of element '// &
-                       whole(solution%assembly%bad_element)//' refuses its own state at rest.')
+         call copy_state(problem%state, problem%next)
+         problem%next%v = 0.0_wp
+         problem%next%a = 0.0_wp
+         problem%assembly%air = .false.
+         call assemble(problem%model%domain, problem%model%dofs, problem%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), &
+                       problem%state, problem%next, .false., problem%assembly)
+         if (problem%assembly%bad_element > 0) then
+            call raise(fault, EXIT_MATERIAL, 'Stage '//trim(problem%stage%name)//': the material of element '// &
+                       whole(problem%assembly%bad_element)//' refuses its own state at rest.')
             return
          end if
       end associate
-      missing = solution%constraint%load_0 - solution%assembly%residual
+      missing = problem%constraint%load_0 - problem%assembly%residual
       do i = 1, size(begin_to_act)
-         if (begin_to_act(i)) where (self%sides(i)%held) solution%constraint%offset = missing
+         if (begin_to_act(i)) where (self%sides(i)%held) problem%constraint%offset = missing
       end do
-      call copy_state(solution%state, solution%next)
+      call copy_state(problem%state, problem%next)
    end subroutine hold_ground
 
-   subroutine exchange(self, solution, archive)
+   subroutine exchange(self, problem, archive)
       class(absorbing_t), intent(inout) :: self
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       class(archive_t), intent(inout) :: archive
 
-      call archive%exchange('offset', solution%constraint%offset, 'kN, m3/s', &
+      call archive%exchange('offset', problem%constraint%offset, 'kN, m3/s', &
                             'flow that is subtracted, forces that hold the ground')
    end subroutine exchange
 end module absorbing

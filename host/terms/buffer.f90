@@ -11,14 +11,13 @@ module buffer
    use key_table, only: key_table_t
    use kinds, only: wp
    use linear_system, only: join_unknowns
-   use model_types, only: model_t
+   use model_types, only: model_t, problem_t
    use name_search, only: defined_name
    use texts, only: LENGTH
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of, acts_in
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
-   use solution, only: solution_t
    use sparsity_pattern, only: pattern_t, place_of_entry => place_of
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
@@ -82,38 +81,36 @@ contains
    end subroutine build_group
 
    !> Springs between the unknowns of the plates, which meet in the matrix from now on.
-   subroutine begin_run(self, model, solution, fault)
+   subroutine begin_run(self, problem, fault)
       class(buffer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       type(added_box_t) :: box
       integer :: pairs(2, size(self%all)), i
 
       do i = 1, size(self%all)
          associate (spring => self%all(i)%spring)
-            spring%upper = model%dofs%of(AT_U_Z, model%plates(self%all(i)%plates(1))%node)
-            spring%lower = model%dofs%of(AT_U_Z, model%plates(self%all(i)%plates(2))%node)
+            spring%upper = problem%model%dofs%of(AT_U_Z, problem%model%plates(self%all(i)%plates(1))%node)
+            spring%lower = problem%model%dofs%of(AT_U_Z, problem%model%plates(self%all(i)%plates(2))%node)
             pairs(:, i) = [spring%upper, spring%lower]
             box%it = spring
-            solution%constraint%added = [solution%constraint%added, box]
-            self%all(i)%place = size(solution%constraint%added)
+            problem%constraint%added = [problem%constraint%added, box]
+            self%all(i)%place = size(problem%constraint%added)
          end associate
       end do
-      call join_unknowns(model%dofs, pairs, solution%system, solution%pattern, solution%assembly)
+      call join_unknowns(problem%model%dofs, pairs, problem%system, problem%pattern, problem%assembly)
    end subroutine begin_run
 
-   subroutine begin_stage(self, model, begins, solution, fault)
+   subroutine begin_stage(self, begins, problem, fault)
       class(buffer_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       logical, intent(in) :: begins
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       integer :: i
 
       do i = 1, size(self%all)
          associate (one => self%all(i))
-            solution%constraint%added(one%place)%it%acts = acts_in(one%stages, model%stages(solution%at%stage)%name)
+            problem%constraint%added(one%place)%it%acts = acts_in(one%stages, problem%stage%name)
          end associate
       end do
    end subroutine begin_stage

@@ -7,14 +7,13 @@ module contact_drainage
    use exit_codes, only: EXIT_CONVERGENCE
    use kinds, only: wp
    use key_table, only: key_table_t
-   use model_types, only: model_t
+   use model_types, only: model_t, problem_t
    use contact_interfaces, only: contacts_t
    use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use scene_parts, only: place_of, LOAD_RAIN
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
-   use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -100,17 +99,16 @@ contains
 
    !> The impervious nodes at the displacements that the step starts from. What the last evaluation of the contacts left
    !> behind stays. docs/theory/contact.md section 5. Fault EXIT_CONVERGENCE: a kernel refuses the displacements.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(contact_drainage_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      select type (contacts => solution%system%contacts)
+      select type (contacts => problem%system%contacts)
       type is (contacts_t)
-         if (contacts%probe(solution%state%x)) then
-            call seal(self, model, contacts, solution%constraint)
+         if (contacts%probe(problem%state%x)) then
+            call seal(self, problem%model, contacts, problem%constraint)
          else
             call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//contacts%message()//'.')
          end if

@@ -6,10 +6,9 @@ module drained_regions
    use kinds, only: wp
    use faults, only: fault_t
    use given_pressures, only: pressures_at_start
-   use model_types, only: model_t
+   use model_types, only: model_t, problem_t
    use porous_domain, only: domain_t, is_present, DRAINED, UNDRAINED
    use scene_term, only: scene_term_t
-   use solution, only: solution_t
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -55,21 +54,20 @@ contains
 
    !> Where drained ground begins that is there, pressures are its own, but for those of a &fix. The suction of an
    !> undrained element without air stays: no balance of air says what it is.
-   subroutine prescribe(self, model, time, solution)
+   subroutine prescribe(self, time, problem)
       class(drained_regions_t), intent(in) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: time
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       integer :: e, i, k, at
 
-      associate (domain => model%domain, c => solution%constraint)
+      associate (domain => problem%model%domain, c => problem%constraint)
          do e = 1, size(domain%region_of)
             if (domain%regions(domain%region_of(e))%drainage /= DRAINED) cycle
-            if (.not. is_present(solution%state, e)) cycle
+            if (.not. is_present(problem%state, e)) cycle
             do k = 1, domain%n_p
                associate (node => domain%mesh%t6(k, e))
                   do i = AT_P_W, AT_P_C
-                     at = model%dofs%of(i, node)
+                     at = problem%model%dofs%of(i, node)
                      if (at == 0) cycle
                      if (c%fixed(at)) cycle
                      c%fixed(at) = .true.
@@ -81,21 +79,20 @@ contains
          if (domain%fluids%henry > 0.0_wp) return
          do e = 1, size(domain%center)
             if (domain%center(e) == 0) cycle
-            at = model%dofs%of(AT_P_C, domain%center(e))
+            at = problem%model%dofs%of(AT_P_C, domain%center(e))
             if (at == 0) cycle
-            if (any(solution%state%s((e - 1)*domain%rule + 1:e*domain%rule) < 1.0_wp)) cycle
+            if (any(problem%state%s((e - 1)*domain%rule + 1:e*domain%rule) < 1.0_wp)) cycle
             c%fixed(at) = .true.
-            c%target(at) = solution%state%x(AT_P_C, domain%center(e))
+            c%target(at) = problem%state%x(AT_P_C, domain%center(e))
          end do
       end associate
    end subroutine prescribe
 
-   subroutine complete(self, model, solution)
+   subroutine complete(self, problem)
       class(drained_regions_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
 
-      call follow_undrained(model%domain, model%dofs%of, solution%next%x)
+      call follow_undrained(problem%model%domain, problem%model%dofs%of, problem%next%x)
    end subroutine complete
 
    !> Pressures of nodes that lie in undrained elements alone, for histories and fields: the mean of what these have

@@ -7,12 +7,11 @@ module friction
    use kinds, only: wp
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
-   use model_types, only: model_t
+   use model_types, only: model_t, problem_t
    use contact_interfaces, only: contacts_t
    use contact_types, only: contact_options_t, has_friction
    use faults, only: fault_t, raise
    use scene_term, only: scene_term_t
-   use solution, only: solution_t
    implicit none (type, external)
    private
    public :: friction_t
@@ -52,40 +51,39 @@ contains
    end subroutine build
 
    !> Displacements and gaps that the friction of a step starts from. Fault EXIT_CONVERGENCE: a kernel refuses them.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(friction_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      select type (contacts => solution%system%contacts)
+      select type (contacts => problem%system%contacts)
       type is (contacts_t)
-         if (.not. contacts%begin_friction(solution%state%x)) &
+         if (.not. contacts%begin_friction(problem%state%x)) &
             call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//contacts%message()//'.')
       end select
    end subroutine before_step
 
    !> The tractions at the end of the step, and what sliding has dissipated.
-   subroutine accept(self, solution, dissipated)
+   subroutine accept(self, problem, dissipated)
       class(friction_t), intent(inout) :: self
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       real(wp), intent(inout) :: dissipated
       real(wp) :: by_sliding
 
-      select type (contacts => solution%system%contacts)
+      select type (contacts => problem%system%contacts)
       type is (contacts_t)
-         call contacts%accept_friction(solution%next%x, by_sliding)
+         call contacts%accept_friction(problem%next%x, by_sliding)
          dissipated = dissipated + by_sliding
       end select
    end subroutine accept
 
-   subroutine exchange(self, solution, archive)
+   subroutine exchange(self, problem, archive)
       class(friction_t), intent(inout) :: self
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       class(archive_t), intent(inout) :: archive
 
-      select type (contacts => solution%system%contacts)
+      select type (contacts => problem%system%contacts)
       type is (contacts_t)
          call contacts%exchange_friction(archive)
       end select

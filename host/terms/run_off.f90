@@ -5,15 +5,13 @@ module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts, value_of
    use boundary_loads, only: force_of
-   use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: has_rates
    use key_table, only: key_table_t
-   use model_types, only: model_t, factor_at, gravity_at, load_t
-   use prescribed_values, only: constraint_t, is_released
-   use scene_parts, only: acts_in, place_of, stage_t, LOAD_RAIN
+   use model_types, only: model_t, problem_t, factor_at, gravity_at, load_t
+   use prescribed_values, only: is_released
+   use scene_parts, only: acts_in, place_of, LOAD_RAIN
    use scene_term, only: scene_term_t
-   use solution, only: solution_t
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
@@ -99,97 +97,83 @@ contains
    end subroutine check_rain
 
    !> The rain among the loads, at both ends of the step.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(run_off_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      associate (c => solution%constraint, stage => model%stages(solution%at%stage), now => solution%state%time)
-         c%rain_0 = rain_at(model, stage, model%dofs, now)
-         c%rain_1 = rain_at(model, stage, model%dofs, now + dt)
-      end associate
+      problem%constraint%rain_0 = rain_at(problem, problem%state%time)
+      problem%constraint%rain_1 = rain_at(problem, problem%state%time + dt)
    end subroutine before_step
 
-   !> The rain of a stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
-   pure function rain_at(model, stage, dofs, time) result(rain)
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
+   !> The rain of the stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
+   pure function rain_at(problem, time) result(rain)
+      type(problem_t), intent(in) :: problem
       real(wp), intent(in) :: time   !< [s]
-      real(wp) :: rain(dofs%n)
+      real(wp) :: rain(problem%model%dofs%n)
       integer :: i
 
       rain = 0.0_wp
-      do i = 1, size(model%loads)
-         associate (one => model%loads(i))
-            if (one%kind == LOAD_RAIN .and. acts_in(one%stages, stage%name)) &
-               rain = rain + force_of(one, factor_at(model, one%amplitude, time))
+      do i = 1, size(problem%model%loads)
+         associate (one => problem%model%loads(i))
+            if (one%kind == LOAD_RAIN .and. acts_in(one%stages, problem%stage%name)) &
+               rain = rain + force_of(one, factor_at(problem%model, one%amplitude, time))
          end associate
       end do
    end function rain_at
 
-   subroutine prescribe(self, model, time, solution)
-      class(run_off_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      real(wp), intent(in) :: time
-      type(solution_t), intent(inout) :: solution
-
-      associate (stage => model%stages(solution%at%stage))
-         if (has_rates(stage%kind)) call limit_pressures(self, model, stage, model%dofs, time, solution%constraint)
-      end associate
-   end subroutine prescribe
-
    !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest, whose group
    !> has the run-off. What another &fix gives has no limit. The air of such a face is that outside.
    !> docs/theory/host.md section 7.7.
-   subroutine limit_pressures(self, model, stage, dofs, time, constraint)
+   subroutine prescribe(self, time, problem)
       class(run_off_t), intent(in) :: self
-      type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: time   !< At the end of the step [s].
-      type(constraint_t), intent(inout) :: constraint
+      real(wp), intent(in) :: time
+      type(problem_t), intent(inout) :: problem
       integer :: i, k
 
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-            if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
-            do k = 1, size(nodes)
-               ! The water outside, where it stands, else the air.
-               if (.not. is_released(constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, value_of(fix, &
-                  model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
-            end do
-         end associate
-      end do
-      do i = 1, size(model%loads)
-         associate (load => model%loads(i), nodes => model%domain%mesh%groups(model%loads(i)%group)%nodes)
-            if (load%kind /= LOAD_RAIN .or. .not. acts_in(load%stages, stage%name)) cycle
-            do k = 1, size(nodes)
-               call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*self%ponding(i), load%group)
-            end do
-         end associate
-      end do
+      if (.not. has_rates(problem%stage%kind)) return
+      associate (model => problem%model, groups => problem%model%domain%mesh%groups, stage => problem%stage)
+         do i = 1, size(model%fixes)
+            associate (fix => model%fixes(i), nodes => groups(model%fixes(i)%group)%nodes)
+               if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
+               do k = 1, size(nodes)
+                  ! The water outside, where it stands, else the air.
+                  if (.not. is_released(problem%constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, &
+                     value_of(fix, model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
+               end do
+            end associate
+         end do
+         do i = 1, size(model%loads)
+            associate (load => model%loads(i), nodes => groups(model%loads(i)%group)%nodes)
+               if (load%kind /= LOAD_RAIN .or. .not. acts_in(load%stages, stage%name)) cycle
+               do k = 1, size(nodes)
+                  call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*self%ponding(i), load%group)
+               end do
+            end associate
+         end do
+      end associate
    contains
       subroutine limit(node, value, group)
          integer, intent(in) :: node, group
          real(wp), intent(in) :: value   !< [kPa]
 
-         associate (at => dofs%of(AT_P_W, node))
-            if (at == 0) return
-            if (constraint%fixed(at)) return
-            if (constraint%limited(at) .and. constraint%target(at) <= value) return
-            constraint%limited(at) = .true.
-            constraint%target(at) = value
-            constraint%limited_by(at) = group
+         associate (dofs => problem%model%dofs, c => problem%constraint)
+            associate (at => dofs%of(AT_P_W, node))
+               if (at == 0) return
+               if (c%fixed(at)) return
+               if (c%limited(at) .and. c%target(at) <= value) return
+               c%limited(at) = .true.
+               c%target(at) = value
+               c%limited_by(at) = group
+            end associate
+            associate (at => dofs%of(AT_P_C, node))
+               if (at == 0 .or. c%air(node)) return
+               if (c%fixed(at)) return
+            end associate
+            c%air(node) = .true.
+            c%air_target(node) = 0.0_wp
          end associate
-         associate (at => dofs%of(AT_P_C, node))
-            if (at == 0 .or. constraint%air(node)) return
-            if (constraint%fixed(at)) return
-         end associate
-         constraint%air(node) = .true.
-         constraint%air_target(node) = 0.0_wp
       end subroutine limit
-   end subroutine limit_pressures
+   end subroutine prescribe
 end module run_off

@@ -11,11 +11,10 @@ module staging
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: make_scheme, STATIC
    use key_table, only: key_table_t
-   use model_types, only: model_t, gravity_at
+   use model_types, only: model_t, problem_t, gravity_at, share_over
    use porous_domain, only: model_state_t, copy_state
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
-   use solution, only: solution_t
    use texts, only: whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -99,68 +98,66 @@ contains
    !> The elements of a stage, which join with it and which leave, and the forces that those held up; where a run is
    !> taken up within the stage, from the unknowns at its start. docs/theory/host.md section 14. Fault EXIT_MATERIAL:
    !> the material of an element that leaves refuses its own state at rest.
-   subroutine begin_stage(self, model, begins, solution, fault)
+   subroutine begin_stage(self, begins, problem, fault)
       class(staging_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       logical, intent(in) :: begins
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       integer :: i, f
 
-      associate (state => solution%state, before => model%ground(:, max(1, solution%at%stage - 1)))
-         state%present = model%ground(:, solution%at%stage)
+      associate (state => problem%state, before => problem%model%ground(:, max(1, problem%at%stage - 1)))
+         state%present = problem%model%ground(:, problem%at%stage)
          state%joins = state%present .and. .not. before
-         call find_held_up(self, model, state%present .or. .not. before, solution, fault)
+         call find_held_up(self, state%present .or. .not. before, problem, fault)
          if (fault%code /= 0) return
-         call mark_absent(model%dofs, state%present, self%absent)
-         do i = 1, merge(model%dofs%n, 0, begins)
+         call mark_absent(problem%model%dofs, state%present, self%absent)
+         do i = 1, merge(problem%model%dofs%n, 0, begins)
             if (.not. self%absent(i)) cycle
-            f = model%dofs%field(i)
-            state%v(f, model%dofs%node(i)) = 0.0_wp
-            if (f <= DISPLACEMENTS) state%a(f, model%dofs%node(i)) = 0.0_wp
+            f = problem%model%dofs%field(i)
+            state%v(f, problem%model%dofs%node(i)) = 0.0_wp
+            if (f <= DISPLACEMENTS) state%a(f, problem%model%dofs%node(i)) = 0.0_wp
          end do
-         state%growth = growth_at(model, solution, state%time)
-         call copy_state(state, solution%next)
+         state%growth = share_over(problem, state%time)
+         call copy_state(state, problem%next)
       end associate
    end subroutine begin_stage
 
    !> What the elements that leave hold up on the nodes around them: their internal forces and weight where the stage
    !> begins. Their points stand still, so that a run that is taken up finds the same.
-   subroutine find_held_up(self, model, stays, solution, fault)
+   subroutine find_held_up(self, stays, problem, fault)
       class(staging_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       logical, intent(in) :: stays(:)      !< (elements) Or has not been there.
-      type(solution_t), intent(in) :: solution
+      type(problem_t), intent(in) :: problem
       type(fault_t), intent(inout) :: fault
       type(model_state_t) :: at_start, same
       type(slopes_t) :: slopes
       type(element_t) :: out
       integer :: e, i, at
 
-      self%held_up = [(0.0_wp, i=1, model%dofs%n)]
+      self%held_up = [(0.0_wp, i=1, problem%model%dofs%n)]
       if (all(stays)) return
-      at_start = solution%state
-      at_start%x = solution%at%x_start
+      at_start = problem%state
+      at_start%x = problem%at%x_start
       at_start%v = 0.0_wp
       at_start%a = 0.0_wp
       at_start%joins = .false.
-      at_start%gravity = gravity_at(model, solution%at%t_start)
+      at_start%gravity = gravity_at(problem%model, problem%at%t_start)
       same = at_start
       ! Laws that change with time are those of the start of the stage.
-      if (allocated(solution%next%laws)) same%laws = solution%next%laws
+      if (allocated(problem%next%laws)) same%laws = problem%next%laws
       do e = 1, size(stays)
          if (stays(e)) cycle
-         call compute_element(model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., slopes, &
-                              out)
+         call compute_element(problem%model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., &
+                              slopes, out)
          if (out%bad_point > 0) then
             call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//', which leaves, refuses its '// &
                        'own state at rest.')
             return
          end if
-         do i = 1, element_size(model%domain, e)
-            at = model%dofs%element(i, e)
+         do i = 1, element_size(problem%model%domain, e)
+            at = problem%model%dofs%element(i, e)
             if (at == 0) cycle
-            if (model%dofs%field(at) <= DISPLACEMENTS) self%held_up(at) = self%held_up(at) + out%r(i)
+            if (problem%model%dofs%field(at) <= DISPLACEMENTS) self%held_up(at) = self%held_up(at) + out%r(i)
          end do
       end do
    end subroutine find_held_up
@@ -183,44 +180,33 @@ contains
       end do
    end subroutine mark_absent
 
-   !> Share of the stage that is over: of the weight of what joins. [-]
-   pure real(wp) function growth_at(model, solution, time) result(share)
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(in) :: solution
-      real(wp), intent(in) :: time   !< [s]
-
-      share = solution%at%share_of(model%stages(solution%at%stage)%duration, time)
-   end function growth_at
-
    !> What is left of the forces that hold up fades over the stage, and the weight of what joins grows.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(staging_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      associate (c => solution%constraint, now => solution%state%time)
-         c%load_0 = c%load_0 - (1 - growth_at(model, solution, now))*self%held_up
-         c%load_1 = c%load_1 - (1 - growth_at(model, solution, now + dt))*self%held_up
-         solution%next%growth = growth_at(model, solution, now + dt)
+      associate (c => problem%constraint, now => problem%state%time)
+         c%load_0 = c%load_0 - (1 - share_over(problem, now))*self%held_up
+         c%load_1 = c%load_1 - (1 - share_over(problem, now + dt))*self%held_up
+         problem%next%growth = share_over(problem, now + dt)
       end associate
    end subroutine before_step
 
    !> Unknowns that no present element has stay as they are.
-   subroutine prescribe(self, model, time, solution)
+   subroutine prescribe(self, time, problem)
       class(staging_t), intent(in) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: time
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       integer :: i
 
-      associate (c => solution%constraint, dofs => model%dofs)
+      associate (c => problem%constraint, dofs => problem%model%dofs)
          do i = 1, dofs%n
             if (.not. self%absent(i)) cycle
             c%fixed(i) = .true.
             c%limited(i) = .false.
-            c%target(i) = solution%state%x(dofs%field(i), dofs%node(i))
+            c%target(i) = problem%state%x(dofs%field(i), dofs%node(i))
             if (dofs%field(i) > DISPLACEMENTS) c%air(dofs%node(i)) = .false.
          end do
       end associate

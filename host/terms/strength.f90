@@ -6,13 +6,12 @@ module strength
    use key_schema, only: REQUIRED
    use key_table, only: key_table_t
    use material_point, only: material_t
-   use model_types, only: model_t, factor_at
+   use model_types, only: model_t, problem_t, factor_at
    use name_search, only: defined_name
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
-   use solution, only: solution_t
    use texts, only: short, LENGTH
    implicit none (type, external)
    private
@@ -114,28 +113,26 @@ contains
    end subroutine check_law
 
    !> The laws of a stage at its start.
-   subroutine begin_stage(self, model, begins, solution, fault)
+   subroutine begin_stage(self, begins, problem, fault)
       class(strength_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       logical, intent(in) :: begins
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       logical :: changes
 
-      call change_laws(self%changes, model, solution%at%t_start, solution%at%t_start, solution%next, changes)
+      call change_laws(self%changes, problem%model, problem%at%t_start, problem%at%t_start, problem%next, changes)
    end subroutine begin_stage
 
    !> The laws of a step. Slopes that were carried along know nothing of a strength that changes.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(strength_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       logical :: changes
 
-      call change_laws(self%changes, model, solution%state%time, solution%state%time + dt, solution%next, changes)
-      if (changes) solution%assembly%slopes%known = .false.
+      call change_laws(self%changes, problem%model, problem%state%time, problem%state%time + dt, problem%next, changes)
+      if (changes) problem%assembly%slopes%known = .false.
    end subroutine before_step
 
    !> How much of a strength is left: a body without equilibrium has no other step.

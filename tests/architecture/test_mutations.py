@@ -8,7 +8,8 @@ import pytest
 from checking import check, root
 
 
-@pytest.mark.parametrize("which", [[], ["--contact"], ["--regions"]], ids=["model", "contact", "regions"])
+@pytest.mark.parametrize("which", [[], ["--contact"], ["--regions"], ["--field"]],
+                         ids=["model", "contact", "regions", "field"])
 def test_every_mutation_finds_its_lines(which):
     done = subprocess.run([sys.executable, root / "tests/mutations/run_mutations.py", "--apply", *which],
                           capture_output=True, text=True)

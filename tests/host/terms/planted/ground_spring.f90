@@ -7,13 +7,12 @@ module ground_spring
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use linear_forces, only: linear_forces_t
-   use model_types, only: model_t, action_t
+   use model_types, only: model_t, problem_t, action_t
    use name_search, only: mesh_group
    use texts, only: LENGTH
    use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
-   use solution, only: solution_t
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -58,10 +57,9 @@ contains
    end subroutine build_group
 
    !> An entry on the diagonal for every displacement. Raises no fault.
-   subroutine begin_run(self, model, solution, fault)
+   subroutine begin_run(self, problem, fault)
       class(ground_spring_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       type(linear_forces_t) :: force
       integer, allocatable :: at(:)
@@ -69,28 +67,27 @@ contains
 
       allocate (at(0))
       do i = 1, size(self%springs)
-         associate (nodes => model%domain%mesh%groups(self%springs(i)%group)%nodes)
-            at = pack(model%dofs%of(:DISPLACEMENTS, nodes), model%dofs%of(:DISPLACEMENTS, nodes) > 0)
+         associate (nodes => problem%model%domain%mesh%groups(self%springs(i)%group)%nodes)
+            at = pack(problem%model%dofs%of(:DISPLACEMENTS, nodes), problem%model%dofs%of(:DISPLACEMENTS, nodes) > 0)
          end associate
          ! A variable, since gfortran leaks components of a constructor within an array.
          force = linear_forces_t(.false., .false., at, at, spread(self%springs(i)%stiffness, 1, size(at)))
-         solution%constraint%linear = [solution%constraint%linear, force]
-         self%springs(i)%place = size(solution%constraint%linear)
+         problem%constraint%linear = [problem%constraint%linear, force]
+         self%springs(i)%place = size(problem%constraint%linear)
       end do
    end subroutine begin_run
 
    !> Raises no fault.
-   subroutine before_step(self, model, dt, solution, fault)
+   subroutine before_step(self, dt, problem, fault)
       class(ground_spring_t), intent(inout) :: self
-      type(model_t), intent(in) :: model
       real(wp), intent(in) :: dt
-      type(solution_t), intent(inout) :: solution
+      type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       integer :: i
 
       do i = 1, size(self%springs)
-         solution%constraint%linear(self%springs(i)%place)%acts = &
-            acts_in(self%springs(i)%stages, model%stages(solution%at%stage)%name)
+         problem%constraint%linear(self%springs(i)%place)%acts = &
+            acts_in(self%springs(i)%stages, problem%stage%name)
       end do
    end subroutine before_step
 end module ground_spring
