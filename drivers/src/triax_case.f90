@@ -13,6 +13,7 @@ module triax_case
    use triax_stage_reader, only: read_stage
    use material_point, only: material_t
    use material_registry, only: new_material
+   use parameter_groups, only: group_of_file
    use retention_curves, only: retention_t
    use retention_groups, only: new_retention, give_retention
    use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, saturation, &
@@ -88,14 +89,13 @@ contains
       character(*), intent(in) :: material   !< Path from the present folder, not from that of the case.
       type(group_t), allocatable, intent(inout) :: groups(:)
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: own(:)
+      type(group_t) :: own
       integer :: place
 
-      call groups_of_text('&material file = "'//trim(material)//'" /', '', own, fault)
+      call group_of_file(material, own, fault)
       if (fault%code /= 0) return
-      own(1)%file = ''
       place = findloc(groups%name, 'material', dim=1)
-      if (place > 0) groups(place) = own(1)
+      if (place > 0) groups(place) = own
       if (place == 0) groups = [groups, own]
    end subroutine replace_material
 
