@@ -16,7 +16,7 @@ module triax_case
    use parameter_groups, only: group_of_file
    use retention_curves, only: retention_t
    use retention_groups, only: new_retention, give_retention
-   use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, saturation, &
+   use triax_point, only: soil_t, point_t, start_point, restore_point, mean_stress, saturation, &
                           AXIAL, RADIAL
    implicit none (type, external)
    private
@@ -264,7 +264,7 @@ contains
          call new_retention(table, unused, fault)
          if (fault%code == 0) call refuse_idle_keys(table%keys, groups(of_retention), fault)
       end if
-      if (fault%code == 0) call make_soil(law, test%soil)
+      if (fault%code == 0) call move_alloc(law, test%soil%law)
    end subroutine read_material
 
    subroutine only_once(file, groups, i, place, fault)
