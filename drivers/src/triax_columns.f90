@@ -6,7 +6,7 @@ module triax_columns
    use triax_stage, only: test_stage_t, general_control
    use triax_stage_run, only: stage_run_t
    use triax_point, only: soil_t, point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
-                          radial_stress, axial_strain, radial_strain, volumetric_strain, AXIAL
+                          radial_stress, volumetric_strain, AXIAL, RADIAL
    implicit none (type, external)
    private
    public :: column_t, COLUMNS, columns_shown, values_of
@@ -82,10 +82,10 @@ contains
       integer, intent(in) :: stage   !< Number of the stage; 0: the start.
       real(wp) :: values(size(COLUMNS))
 
-      values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
+      values = [point%strain(AXIAL), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
                 void_ratio(soil, point), saturation(soil, point), &
                 state_value(soil, point, 'n_substep'), state_value(soil, point, 'n_reset'), point%stress(AXIAL), &
-                radial_stress(point), radial_strain(point), point%suction, run%pressure, &
+                radial_stress(point), 0.5_wp*sum(point%strain(RADIAL)), point%suction, run%pressure, &
                 state_value(soil, point, 'state_parameter'), state_value(soil, point, 'n_rate'), &
                 state_value(soil, point, 'n_reject'), state_value(soil, point, 'n_guard'), error, real(stage, wp), &
                 real(run%cycle, wp), run%r_u, point%p_a, point%stress, point%strain]

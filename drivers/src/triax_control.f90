@@ -10,7 +10,7 @@ module triax_control
    use triax_stage, only: test_stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use material_point, only: MOST_GUARDS, batch_report_t
    use triax_point, only: soil_t, point_t, tangent_t, update_point, save_update, update_sentence, void_ratio, &
-                          saturation, axial_strain, volumetric_strain, mean_stress, deviator_stress
+                          saturation, volumetric_strain, mean_stress, deviator_stress, AXIAL
    implicit none (type, external)
    private
    public :: plan_t, tally_t, plan_path, advance, lead, quantity, CONTROL_TOLERANCE
@@ -176,7 +176,7 @@ contains
       do while (done < upto)
          if (tally%updates >= tally%max_updates) then
             call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%stage%control))//' stage, at eps_a '// &
-                       short(axial_strain(point))//': '//whole(tally%updates)// &
+                       short(point%strain(AXIAL))//': '//whole(tally%updates)// &
                        ' updates of the material are done, and max_updates of &case allows '// &
                        whole(tally%max_updates)//'.')
             return
@@ -196,7 +196,7 @@ contains
             if (share < upto*0.5_wp**MAX_CUTS) then
                name = ' '//trim(soil%law%unit%name)
                call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%stage%control))//' stage, increment '//whole(k)// &
-                          ' of '//whole(plan%increments)//', at eps_a '//short(axial_strain(point))//', eps_v '// &
+                          ' of '//whole(plan%increments)//', at eps_a '//short(point%strain(AXIAL))//', eps_v '// &
                           short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//name//', q '// &
                           short(deviator_stress(point))//name//', suction '//short(point%suction)//name// &
                           '; the increment was halved '//whole(MAX_CUTS)//' times. '//trim(trouble%text))

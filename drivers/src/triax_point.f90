@@ -13,7 +13,7 @@ module triax_point
    public :: soil_t, point_t, tangent_t
    public :: AXIAL, RADIAL
    public :: start_point, restore_point, update_point, save_update, update_sentence
-   public :: mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, void_ratio, &
+   public :: mean_stress, deviator_stress, radial_stress, volumetric_strain, void_ratio, &
              saturation, state_value
 
    integer, parameter :: AXIAL = 3            !< Component along the axis of the sample.
@@ -28,7 +28,7 @@ module triax_point
    !> A sample at one moment.
    type :: point_t
       real(wp) :: stress(6) = 0.0_wp   !< Effective stress [unit of stress of the law].
-      real(wp) :: strain(6) = 0.0_wp   !< Strain since the start [-].
+      real(wp) :: strain(6) = 0.0_wp   !< Natural strain since the start [-].
       real(wp) :: suction = 0.0_wp     !< [unit of stress of the law]
       real(wp) :: p_a = 0.0_wp         !< Air pressure, above the atmosphere [unit of stress of the law].
       real(wp), allocatable :: state(:, :)   !< One column.
@@ -164,20 +164,6 @@ contains
 
       deviator_stress = point%stress(AXIAL) - radial_stress(point)
    end function deviator_stress
-
-   !> Natural axial strain since the start of the test, compression positive [-].
-   pure real(wp) function axial_strain(point)
-      type(point_t), intent(in) :: point
-
-      axial_strain = point%strain(AXIAL)
-   end function axial_strain
-
-   !> Mean of the two natural radial strains since the start of the test, compression positive [-].
-   pure real(wp) function radial_strain(point)
-      type(point_t), intent(in) :: point
-
-      radial_strain = 0.5_wp*sum(point%strain(RADIAL))
-   end function radial_strain
 
    !> Natural volumetric strain since the start of the test, compression positive [-].
    pure real(wp) function volumetric_strain(point)

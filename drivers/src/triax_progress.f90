@@ -9,12 +9,12 @@ module triax_progress
    use triax_case, only: case_t
    use triax_control, only: tally_t
    use triax_output, only: table_t
-   use triax_point, only: point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, axial_strain, &
-                          volumetric_strain
+   use triax_point, only: point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
+                          volumetric_strain, AXIAL
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: timer_t, start_timer, progress_is_due, show_progress, show_summary
+   public :: timer_t, progress_is_due, show_progress, show_summary
 
    real(wp), parameter :: FIRST_PROGRESS = 2.0_wp   !< Runs shorter than this show none [s].
 
@@ -26,13 +26,6 @@ module triax_progress
    end type timer_t
 
 contains
-   !> Starts the clock of a run.
-   subroutine start_timer(timer)
-      type(timer_t), intent(out) :: timer
-
-      timer%start = clock()
-   end subroutine start_timer
-
    !> A line on the error output after 2 s, and then each time the run has become half as long again.
    subroutine show_progress(timer, share, what)
       type(timer_t), intent(inout) :: timer
@@ -69,7 +62,7 @@ contains
       name = ' '//trim(test%soil%law%unit%name)
       associate (soil => test%soil)
          write (output_unit, '(a)') trim(test%name)//' ('//trim(test%material)//', MUD '//library_version()//')'
-         write (output_unit, '(a)') '   end        eps_a '//short(axial_strain(point))//', eps_v '// &
+         write (output_unit, '(a)') '   end        eps_a '//short(point%strain(AXIAL))//', eps_v '// &
             short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//name//', q '// &
             short(deviator_stress(point))//name//', e '//short(void_ratio(soil, point))//', S_w '// &
             short(saturation(soil, point))//psi()
