@@ -2,13 +2,13 @@
 !> Words and numbers: reading and writing.
 module texts
    use, intrinsic :: iso_fortran_env, only: int32, int64
-   use, intrinsic :: iso_c_binding, only: c_null_char
+   use, intrinsic :: iso_c_binding, only: c_char, c_f_pointer, c_null_char, c_ptr, c_size_t
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_overflow, ieee_get_halting_mode, &
                                              ieee_set_halting_mode, ieee_set_flag
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: lower_case, short, whole, read_number, from_c, word_place, mark_length, LENGTH
+   public :: lower_case, short, whole, read_number, from_c, text_at, word_place, mark_length, LENGTH
 
    integer, parameter :: LENGTH = 256   !< Longest key, value or path of a text that is read.
 
@@ -16,6 +16,13 @@ module texts
    interface whole
       module procedure whole_32, whole_64
    end interface whole
+
+   interface
+      integer(c_size_t) function strlen(text) bind(c)
+         import :: c_size_t, c_ptr
+         type(c_ptr), value :: text
+      end function strlen
+   end interface
 contains
    !> The text with ASCII letters in lower case.
    elemental function lower_case(text) result(lower)
@@ -170,4 +177,18 @@ contains
       if (last < 0) last = len_trim(buffer)
       text = buffer(:last)
    end function from_c
+
+   !> A text of C, without its null. The pointer is not NULL.
+   function text_at(place) result(text)
+      type(c_ptr), intent(in) :: place
+      character(:), allocatable :: text
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i
+
+      call c_f_pointer(place, letters, [strlen(place)])
+      allocate (character(size(letters)) :: text)
+      do i = 1, size(letters)
+         text(i:i) = letters(i)
+      end do
+   end function text_at
 end module texts

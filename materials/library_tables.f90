@@ -11,8 +11,8 @@ module library_tables
    implicit none (type, external)
    private
    public :: library_version, property_count, property_index, property_name, property_unit, property_origin, &
-             property_meaning, property_option, option_words, property_range, range_for, state_count, statev_index, &
-             statev_name
+             property_meaning, table_text, property_option, option_words, property_range, range_for, state_count, &
+             statev_index, statev_name
 
    integer, parameter :: BUFFER = 600
 contains
@@ -99,6 +99,7 @@ contains
       text = table_text(MUD_STATEV, place, MUD_NAME)
    end function statev_name
 
+   !> A text about an entry: list MUD_PROPS or MUD_STATEV, place from 1, field MUD_NAME ... Empty where there is none.
    function table_text(list, place, field) result(text)
       integer(c_int), intent(in) :: list, field
       integer, intent(in) :: place

@@ -7,13 +7,13 @@ module parameter_groups
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_schema, only: key_t, check_group, get_number, NONE, UNBOUNDED
    use texts, only: lower_case, short, whole, read_number, word_place, from_c
-   use namelists, only: group_t, read_groups, find_entry
+   use namelists, only: group_t, read_groups, groups_of_text, find_entry
    use library_tables, only: property_count, property_index, property_name, property_unit, property_meaning, &
                              property_option, option_words, range_for
    use stress_units, only: stress_unit_t, unit_of_atmosphere, in_unit
    implicit none (type, external)
    private
-   public :: read_parameters
+   public :: read_parameters, group_of_file
 
    integer, parameter :: BUFFER = 600
    character(*), parameter :: WARNING = 'warning: '   !< The library's sentence begins with it.
@@ -59,7 +59,8 @@ contains
          if (path(1:1) /= '/') path = folder_of(group%file)//path
          call read_groups(path, groups, fault)
          if (fault%code /= 0) then
-            if (size(groups) == 0) fault%text = at_line(group%file, group%entries(place)%line)//fault%text
+            if (size(groups) == 0 .and. group%file /= '') &
+               fault%text = at_line(group%file, group%entries(place)%line)//fault%text
             return
          end if
          if (size(groups) /= 1) then
@@ -85,6 +86,21 @@ contains
       end do
       doubt = doubt_of_file
    end subroutine read_parameters
+
+   !> A group &material that takes everything from a file, whose path begins at the present folder; blank: the
+   !> defaults. Fault EXIT_INPUT: the path is too long.
+   subroutine group_of_file(file, group, fault)
+      character(*), intent(in) :: file
+      type(group_t), intent(out) :: group
+      type(fault_t), intent(inout) :: fault
+      type(group_t), allocatable :: groups(:)
+      character(:), allocatable :: entry
+
+      entry = ''
+      if (file /= '') entry = 'file = "'//trim(file)//'"'
+      call groups_of_text('&material '//entry//' /', '', groups, fault)
+      if (fault%code == 0) group = groups(1)
+   end subroutine group_of_file
 
    !> Folder of a file, with its closing slash; empty if the file is in the present one.
    pure function folder_of(file) result(folder)

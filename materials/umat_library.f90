@@ -2,15 +2,15 @@
 !> UMATs from shared libraries: the interface of Abaqus, and the loader of the system (POSIX).
 module umat_library
    use, intrinsic :: iso_c_binding, only: c_ptr, c_funptr, c_char, c_int, c_size_t, c_double, c_null_char, &
-                                          c_associated, c_f_pointer, c_f_procpointer
+                                          c_associated, c_f_procpointer
    use dynamic_loader, only: dlopen, dlsym, dlerror, RTLD_NOW
    use faults, only: fault_t, raise, EXIT_INPUT
+   use texts, only: text_at
    implicit none (type, external)
    private
    public :: umat_i, load_umat, CMNAME_LENGTH
 
    integer, parameter :: CMNAME_LENGTH = 80
-   integer, parameter :: LONGEST_MESSAGE = 400
 
    abstract interface
       !> Calling convention of gfortran: every argument by its address, the length of CMNAME after the last one. Units
@@ -58,17 +58,10 @@ contains
    !> Message of the loader about its last failure.
    function loader_message() result(text)
       character(:), allocatable :: text
-      character(kind=c_char), pointer :: letters(:)
       type(c_ptr) :: message
-      integer :: i
 
       text = ''
       message = dlerror()
-      if (.not. c_associated(message)) return
-      call c_f_pointer(message, letters, [LONGEST_MESSAGE])
-      do i = 1, LONGEST_MESSAGE
-         if (letters(i) == c_null_char) exit
-         text = text//letters(i)
-      end do
+      if (c_associated(message)) text = text_at(message)
    end function loader_message
 end module umat_library

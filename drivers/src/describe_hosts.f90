@@ -4,13 +4,14 @@
 module describe_hosts
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use describe_tables, only: text, number, version
+   use describe_tables, only: number
    use faults, only: fault_t, raise, EXIT_INPUT
    use kinds, only: wp
-   use library_tables, only: property_index, property_name, property_unit, statev_name, state_count
+   use library_tables, only: library_version, property_index, property_name, property_unit, statev_name, state_count, &
+      table_text
    use mud_interface, only: mud_convert_props, MUD_STATEV, MUD_MEANING
-   use namelists, only: group_t, read_groups
-   use parameter_groups, only: read_parameters
+   use namelists, only: group_t
+   use parameter_groups, only: read_parameters, group_of_file
    use stress_units, only: stress_unit_t, unit_named, unit_of_atmosphere, in_unit, UNIT_NAMES
    use texts, only: whole
    implicit none (type, external)
@@ -50,26 +51,11 @@ contains
       character(*), intent(in) :: file, unit   !< Unit blank: that of the file, which p_atm tells.
       type(named_material_t), intent(out) :: material
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: groups(:)
-      type(group_t) :: none
+      type(group_t) :: group
       type(stress_unit_t) :: wanted
 
-      if (file == '') then
-         allocate (none%entries(0))
-         call read_parameters(none, material%props, material%title, material%doubt, fault)
-      else
-         call read_groups(trim(file), groups, fault)
-         if (fault%code /= 0) return
-         if (size(groups) /= 1) then
-            call raise(fault, EXIT_INPUT, trim(file)//': has '//whole(size(groups))// &
-                       ' groups; a material file holds exactly one, &material.')
-         else if (groups(1)%name /= 'material') then
-            call raise(fault, EXIT_INPUT, trim(file)//': the group is &'//trim(groups(1)%name)// &
-                       '; a material file holds exactly one, &material.')
-         else
-            call read_parameters(groups(1), material%props, material%title, material%doubt, fault)
-         end if
-      end if
+      call group_of_file(file, group, fault)
+      if (fault%code == 0) call read_parameters(group, material%props, material%title, material%doubt, fault)
       if (fault%code /= 0) return
       material%unit = unit_of_atmosphere(material%props(property_index('p_atm')))
       if (unit == '') return
@@ -125,6 +111,7 @@ contains
    subroutine print_host(host, material)
       character(*), intent(in) :: host
       type(named_material_t), intent(in) :: material
+      integer :: i
 
       select case (host)
       case ('abaqus')
@@ -139,14 +126,14 @@ contains
          call print_ogs(material, 'MUD')
       case ('ogs-unsaturated')
          call print_ogs(material, 'MUD_StressSaturation')
-      case ('incrementaldriver')
-         call print_driver(material)
+      case ('incrementaldriver', 'plain')
+         ! what follows # in the first line is a remark
+         if (host /= 'plain') write (output_unit, '(a)') 'MUD # '//headline(material), whole(size(material%props))
+         write (output_unit, '(a)') (exact(material%props(i)), i=1, size(material%props))
       case ('incrementaldriver-start')
          call print_driver_start(material)
       case ('udsm')
          call print_udsm(material)
-      case ('plain')
-         call print_plain(material)
       end select
    end subroutine print_host
 
@@ -156,11 +143,12 @@ contains
       integer(c_int) :: i
 
       write (output_unit, '(2a)') '*User material, constants=', whole(size(material%props))
-      call print_cards(material%props)
+      call print_cards(material%props, '', '')
       write (output_unit, '(a)') '*Depvar'
       write (output_unit, '(2a)') whole(state_count(material%props)), ','
       do i = 1, state_count(material%props)
-         write (output_unit, '(*(a))') whole(i), ', ', statev_name(i), ', "', text(MUD_STATEV, i - 1, MUD_MEANING), '"'
+         write (output_unit, '(*(a))') whole(i), ', ', statev_name(i), ', "', table_text(MUD_STATEV, i, MUD_MEANING), &
+            '"'
       end do
    end subroutine print_abaqus
 
@@ -174,7 +162,7 @@ contains
          '** more than six: a card for every point, two lines long (six entries, then 0.). Warnings can be ignored.', &
          '*MATERIAL, NAME=@ABAQUS_MUD'
       write (output_unit, '(2a)') '*USER MATERIAL, CONSTANTS=', whole(size(material%props))
-      call print_cards(material%props)
+      call print_cards(material%props, '', '')
       write (output_unit, '(a)') '*DEPVAR', whole(state_count(material%props))
    end subroutine print_calculix
 
@@ -184,7 +172,6 @@ contains
       logical, intent(in) :: by_udsm
       real(wp) :: props(size(material%props))
       real(wp), allocatable :: state(:)
-      integer :: i
 
       props = material%props
       if (.not. by_udsm) props(property_index('shear_order')) = 1.0_wp
@@ -196,29 +183,15 @@ contains
       write (output_unit, '(a)') '      "Variables": {', '         "UDSM_NAME": "libmud.so",'
       if (by_udsm) write (output_unit, '(a)') '         "UDSM_NUMBER": 1,'
       write (output_unit, '(a)') '         "IS_FORTRAN_UDSM": true,', '         "UMAT_PARAMETERS": ['
-      call print_list(props)
+      call print_cards(props, repeat(' ', 12), ',')
       if (by_udsm) then
          write (output_unit, '(a)') '         ]'
       else
          write (output_unit, '(a)') '         ],', '         "STATE_VARIABLES": ['
-         call print_list(state)
+         call print_cards(state, repeat(' ', 12), ',')
          write (output_unit, '(a)') '         ]'
       end if
       write (output_unit, '(a)') '      },', '      "Tables": {}', '   }', '}]}'
-   contains
-      subroutine print_list(values)
-         real(wp), intent(in) :: values(:)
-         character(:), allocatable :: line
-
-         line = ''
-         do i = 1, size(values)
-            line = line//exact(values(i))
-            if (i < size(values)) line = line//', '
-            if (mod(i, A_LINE) /= 0 .and. i < size(values)) cycle
-            write (output_unit, '(12x, a)') trim(line)
-            line = ''
-         end do
-      end subroutine print_list
    end subroutine print_kratos
 
    !> Two pieces of a .prj: into <process>, and into <parameters>.
@@ -241,14 +214,6 @@ contains
       end do
    end subroutine print_ogs
 
-   !> Name, count, a number a line; what follows # in the first line is a remark.
-   subroutine print_driver(material)
-      type(named_material_t), intent(in) :: material
-
-      write (output_unit, '(a)') 'MUD # '//headline(material), whole(size(material%props))
-      call print_plain(material)
-   end subroutine print_driver
-
    !> Stress of six components, then STATEV with the void ratio of the material.
    subroutine print_driver_start(material)
       type(named_material_t), intent(in) :: material
@@ -268,34 +233,32 @@ contains
 
    subroutine print_udsm(material)
       type(named_material_t), intent(in) :: material
+      character(:), allocatable :: unit
       integer :: i
 
       write (output_unit, '(a)') headline(material)
       do i = 1, size(material%props)
-         write (output_unit, '(a, t6, a, t24, a, t36, a)') whole(i), property_name(i), unit_of(material, i), &
-            exact(material%props(i))
+         unit = in_unit(property_unit(i), material%unit)
+         if (unit == '1') unit = '-'
+         write (output_unit, '(a, t6, a, t24, a, t36, a)') whole(i), property_name(i), unit, exact(material%props(i))
       end do
    end subroutine print_udsm
 
-   subroutine print_plain(material)
-      type(named_material_t), intent(in) :: material
-      integer :: i
-
-      write (output_unit, '(a)') (exact(material%props(i)), i=1, size(material%props))
-   end subroutine print_plain
-
-   !> Numbers of a card, eight a line.
-   subroutine print_cards(values)
+   !> Numbers, eight a line.
+   subroutine print_cards(values, indent, ends)
       real(wp), intent(in) :: values(:)
+      character(*), intent(in) :: indent, ends   !< Before a line; behind one that another follows.
       character(:), allocatable :: line
       integer :: i
 
-      line = ''
+      line = indent
       do i = 1, size(values)
          line = line//exact(values(i))
-         if (mod(i, A_LINE) == 0 .or. i == size(values)) then
+         if (i == size(values)) then
             write (output_unit, '(a)') line
-            line = ''
+         else if (mod(i, A_LINE) == 0) then
+            write (output_unit, '(a)') line//ends
+            line = indent
          else
             line = line//', '
          end if
@@ -307,18 +270,8 @@ contains
       type(named_material_t), intent(in) :: material
       character(:), allocatable :: line
 
-      line = 'MUD '//version()//', '//trim(material%title)//', stresses in '//trim(material%unit%name)
+      line = 'MUD '//library_version()//', '//trim(material%title)//', stresses in '//trim(material%unit%name)
    end function headline
-
-   !> Unit of a parameter, with the unit of stress of the material.
-   function unit_of(material, i) result(unit)
-      type(named_material_t), intent(in) :: material
-      integer, intent(in) :: i
-      character(:), allocatable :: unit
-
-      unit = in_unit(property_unit(i), material%unit)
-      if (unit == '1') unit = '-'
-   end function unit_of
 
    !> Writes a value in as few digits as read back to the same bits: as `number` writes it where that is enough, else in
    !> up to 17 of them.

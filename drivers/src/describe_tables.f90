@@ -1,15 +1,16 @@
 ! SPDX-License-Identifier: MIT
 !> Tables of the library as Markdown, and a namelist with every parameter.
 module describe_tables
-   use, intrinsic :: iso_c_binding, only: c_int, c_double, c_null_char
-   use mud_interface, only: mud_count, mud_text, mud_bounds, mud_version, MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, &
-      MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, MUD_ROTATION, MUD_EVOLUTION
-   use texts, only: from_c
+   use, intrinsic :: iso_c_binding, only: c_int, c_double
+   use library_tables, only: library_version, property_count, property_name, property_unit, property_meaning, &
+      property_range, statev_name, table_text
+   use mud_interface, only: mud_count, MUD_PROPS, MUD_STATEV, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, &
+      MUD_INITIAL, MUD_ROTATION, MUD_EVOLUTION
+   use texts, only: whole
    implicit none (type, external)
    private
-   public :: print_props, print_statev, print_namelist, text, version, number
+   public :: print_props, print_statev, print_namelist, number
 
-   integer, parameter :: BUFFER = 256
    character, parameter :: BACKSLASH = achar(92)
 contains
    !> Prints the parameters of the library as a table in Markdown.
@@ -19,12 +20,11 @@ contains
 
       print '(a)', '| PROPS | name | symbol | unit | bounds | default | origin | meaning |', &
          '|---|---|---|---|---|---|---|---|'
-      do i = 0, mud_count(MUD_PROPS) - 1
-         if (mud_bounds(MUD_PROPS, i, lower, upper, preset) /= 0) cycle
-         print '(a, i0, *(a))', '| ', i + 1, ' | `', text(MUD_PROPS, i, MUD_NAME), '` | ', cell(MUD_PROPS, i, &
-            MUD_SYMBOL), ' | ', &
-            cell(MUD_PROPS, i, MUD_UNIT), ' | ', number(lower), ' to ', number(upper), ' | ', number(preset), ' | ', &
-            cell(MUD_PROPS, i, MUD_ORIGIN), ' | ', cell(MUD_PROPS, i, MUD_MEANING), ' |'
+      do i = 1, property_count()
+         call property_range(i, lower, upper, preset)
+         print '(a)', '| '//whole(i)//' | `'//property_name(i)//'` |'//cells(MUD_PROPS, i, [MUD_SYMBOL, MUD_UNIT])// &
+            ' '//number(lower)//' to '//number(upper)//' | '//number(preset)//' |'// &
+            cells(MUD_PROPS, i, [MUD_ORIGIN, MUD_MEANING])
       end do
    end subroutine print_props
 
@@ -34,11 +34,9 @@ contains
 
       print '(a)', '| STATEV | name | symbol | unit | initially | rotates | evolves | origin | meaning |', &
          '|---|---|---|---|---|---|---|---|---|'
-      do i = 0, mud_count(MUD_STATEV) - 1
-         print '(a, i0, *(a))', '| ', i + 1, ' | `', text(MUD_STATEV, i, MUD_NAME), '` | ', cell(MUD_STATEV, i, &
-            MUD_SYMBOL), ' | ', cell(MUD_STATEV, i, MUD_UNIT), ' | ', cell(MUD_STATEV, i, MUD_INITIAL), ' | ', &
-            cell(MUD_STATEV, i, MUD_ROTATION), ' | ', cell(MUD_STATEV, i, MUD_EVOLUTION), ' | ', &
-            cell(MUD_STATEV, i, MUD_ORIGIN), ' | ', cell(MUD_STATEV, i, MUD_MEANING), ' |'
+      do i = 1, mud_count(MUD_STATEV)
+         print '(a)', '| '//whole(i)//' | `'//statev_name(i)//'` |'//cells(MUD_STATEV, i, [MUD_SYMBOL, MUD_UNIT, &
+            MUD_INITIAL, MUD_ROTATION, MUD_EVOLUTION, MUD_ORIGIN, MUD_MEANING])
       end do
    end subroutine print_statev
 
@@ -47,51 +45,33 @@ contains
       integer(c_int) :: i
       real(c_double) :: lower, upper, preset
 
-      print '(3a)', '! every parameter of MUD ', version(), ' at its default'
+      print '(3a)', '! every parameter of MUD ', library_version(), ' at its default'
       print '(a)', '&material'
-      do i = 0, mud_count(MUD_PROPS) - 1
-         if (mud_bounds(MUD_PROPS, i, lower, upper, preset) /= 0) cycle
-         print '(*(a))', '   ', text(MUD_PROPS, i, MUD_NAME), ' = ', number(preset), '   ! [', text(MUD_PROPS, i, &
-            MUD_UNIT), '] ', &
-            number(lower), ' to ', number(upper), ': ', text(MUD_PROPS, i, MUD_MEANING)
+      do i = 1, property_count()
+         call property_range(i, lower, upper, preset)
+         print '(*(a))', '   ', property_name(i), ' = ', number(preset), '   ! [', property_unit(i), '] ', &
+            number(lower), ' to ', number(upper), ': ', property_meaning(i)
       end do
       print '(a)', '/'
    end subroutine print_namelist
 
-   !> One text of the registry. Empty where there is none.
-   function text(list, index, field) result(string)
-      integer(c_int), intent(in) :: list, index, field   !< MUD_PROPS or MUD_STATEV; from 0; MUD_NAME ...
-      character(:), allocatable :: string
-      character(BUFFER) :: raw
+   !> Texts of an entry as cells of a table, which end at a bar.
+   function cells(list, place, fields) result(line)
+      integer(c_int), intent(in) :: list, place, fields(:)
+      character(:), allocatable :: line, plain
+      integer :: k, i
 
-      raw = c_null_char
-      if (mud_text(list, index, field, raw, BUFFER) < 0) raw = c_null_char
-      string = from_c(raw)
-   end function text
-
-   !> Text of an entry as a cell of a table, whose cells end at a bar.
-   function cell(list, index, field) result(string)
-      integer(c_int), intent(in) :: list, index, field
-      character(:), allocatable :: string, plain
-      integer :: i
-
-      plain = text(list, index, field)
-      string = ''
-      do i = 1, len(plain)
-         if (plain(i:i) == '|') string = string//BACKSLASH
-         string = string//plain(i:i)
+      line = ''
+      do k = 1, size(fields)
+         plain = table_text(list, place, fields(k))
+         line = line//' '
+         do i = 1, len(plain)
+            if (plain(i:i) == '|') line = line//BACKSLASH
+            line = line//plain(i:i)
+         end do
+         line = line//' |'
       end do
-   end function cell
-
-   !> Version of the library.
-   function version() result(string)
-      character(:), allocatable :: string
-      character(BUFFER) :: raw
-
-      raw = c_null_char
-      if (mud_version(raw, BUFFER) < 0) raw = c_null_char
-      string = from_c(raw)
-   end function version
+   end function cells
 
    !> The shortest of the usual ways to write a number. Large and small ones with three digits, others with six decimals
    !> at most.

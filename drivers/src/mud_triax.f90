@@ -15,9 +15,10 @@ program mud_triax
    use triax_point, only: point_t, void_ratio, mean_stress
    use triax_control, only: tally_t
    use triax_output, only: table_t, open_table
-   use triax_progress, only: timer_t, start_timer, show_summary
+   use triax_progress, only: timer_t, show_summary
    use triax_run, only: run_test
    use triax_help, only: print_help, print_template
+   use wall_clock, only: clock
    implicit none (type, external)
 
    type(option_t) :: options(10) = [ &
@@ -109,8 +110,7 @@ contains
       if (option_given(options, '--verify')) call verify_accuracy(test, answer)
       if (test%accuracy > 0.0_wp) call note_accuracy(answer, table, fault)
       if (tally%residuals) write (output_unit, '(a)') 'increment,iteration,error'
-      call start_timer(timer)
-      if (.not. quiet) timer%shown = .true.
+      timer = timer_t(start=clock(), shown=.not. quiet)
       call run_test(test, table, tally, timer, point, fault)
       if (test%soil%law%unguarded .and. tally%least_pressure < 0.0_wp) write (error_unit, '(a)') &
          'mud_triax: warning: the mean effective stress p'' fell to '//short(tally%least_pressure)//' '// &

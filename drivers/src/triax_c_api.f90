@@ -1,11 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> The functions of mud_triax.h: a case given as text, its table in memory.
 module triax_c_api
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_char, c_double, c_size_t, c_null_ptr, c_null_char, c_loc, &
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_char, c_double, c_null_ptr, c_null_char, c_loc, &
                                           c_f_pointer, c_associated
    use faults, only: fault_t, raise, EXIT_INPUT
    use namelists, only: group_t, groups_of_text
    use kinds, only: wp
+   use texts, only: text_at
    use triax_accuracy, only: accuracy_t, reach_accuracy, note_accuracy
    use stress_units, only: in_unit
    use triax_case, only: case_t, make_case
@@ -18,18 +19,6 @@ module triax_c_api
    implicit none (type, external)
    private
    public :: triax_run_text, triax_rows, triax_columns_, triax_column, triax_values, triax_remarks, triax_free
-
-   !> Result that a handle points to.
-   type :: result_t
-      type(table_t) :: table
-   end type result_t
-
-   interface
-      integer(c_size_t) function strlen(text) bind(c)
-         import :: c_size_t, c_ptr
-         type(c_ptr), value :: text
-      end function strlen
-   end interface
 contains
    !> Runs a case. A handle is given where there are rows: also after a test that stopped (3), not after one that was
    !> refused (2). Threads wait for each other: gfortran keeps the length of a text that a function returns (deferred
@@ -50,7 +39,7 @@ contains
       type(c_ptr), intent(out) :: handle
       integer(c_int), intent(in) :: length
       integer(c_int), intent(out) :: code
-      type(result_t), pointer :: result
+      type(table_t), pointer :: result
       type(group_t), allocatable :: groups(:)
       type(case_t) :: test
       type(tally_t) :: tally
@@ -71,12 +60,12 @@ contains
       if (fault%code == 0) call make_case(groups, file, test, fault)
       if (fault%code == 0) then
          allocate (result)
-         call open_memory_table(test, result%table, fault)
+         call open_memory_table(test, result, fault)
          if (test%accuracy > 0.0_wp) then
             call reach_accuracy(test, answer)
-            call note_accuracy(answer, result%table, fault)
+            call note_accuracy(answer, result, fault)
          end if
-         call run_test(test, result%table, tally, timer, point, fault)
+         call run_test(test, result, tally, timer, point, fault)
          handle = c_loc(result)
       end if
       call put(trim(fault%text), message, length)
@@ -86,42 +75,42 @@ contains
    !> Number of rows, 0 without a handle.
    integer(c_int) function triax_rows(handle) bind(c, name='mud_triax_rows')
       type(c_ptr), value :: handle
-      type(result_t), pointer :: result
+      type(table_t), pointer :: result
 
       triax_rows = 0
       result => result_of(handle)
       if (.not. associated(result)) return
-      triax_rows = result%table%rows
+      triax_rows = result%rows
    end function triax_rows
 
    !> Number of columns, 0 without a handle.
    integer(c_int) function triax_columns_(handle) bind(c, name='mud_triax_columns')
       type(c_ptr), value :: handle
-      type(result_t), pointer :: result
+      type(table_t), pointer :: result
 
       triax_columns_ = 0
       result => result_of(handle)
       if (.not. associated(result)) return
-      triax_columns_ = size(result%table%shown, kind=c_int)
+      triax_columns_ = size(result%shown, kind=c_int)
    end function triax_columns_
 
    !> A text about a column: MUD_TRIAX_NAME, _UNIT or _MEANING. -1: no handle, no such column (from 0) or field.
    integer(c_int) function triax_column(handle, index, field, text, len) bind(c, name='mud_triax_column')
       type(c_ptr), value :: handle, text
       integer(c_int), value :: index, field, len
-      type(result_t), pointer :: result
+      type(table_t), pointer :: result
 
       triax_column = -1
       result => result_of(handle)
       if (.not. associated(result)) return
-      if (index < 0 .or. index >= size(result%table%shown)) return
+      if (index < 0 .or. index >= size(result%shown)) return
       triax_column = 0
-      associate (column => result%table%shown(index + 1))
+      associate (column => result%shown(index + 1))
          select case (field)
          case (1)
             call put(trim(COLUMNS(column)%name), text, len)
          case (2)
-            call put(in_unit(trim(COLUMNS(column)%unit), result%table%unit), text, len)
+            call put(in_unit(trim(COLUMNS(column)%unit), result%unit), text, len)
          case (3)
             call put(trim(COLUMNS(column)%meaning), text, len)
          case default
@@ -133,34 +122,34 @@ contains
    !> All values, column after column. (rows, columns), in the units of triax_column; -1: no handle or no room.
    integer(c_int) function triax_values(handle, values) bind(c, name='mud_triax_values')
       type(c_ptr), value :: handle, values
-      type(result_t), pointer :: result
+      type(table_t), pointer :: result
       real(c_double), pointer :: room(:, :)
 
       triax_values = -1
       result => result_of(handle)
       if (.not. (associated(result) .and. c_associated(values))) return
-      call c_f_pointer(values, room, [result%table%rows, size(result%table%shown)])
-      room = result%table%kept(:result%table%rows, :)
+      call c_f_pointer(values, room, [result%rows, size(result%shown)])
+      room = result%kept(:result%rows, :)
       triax_values = 0
    end function triax_values
 
    !> Writes what the head of a file would say, and how stages ended: "name: text" lines. Returns how long it is.
-   integer(c_int) function triax_remarks(handle, text, len) bind(c, name='mud_triax_remarks')
+   integer(c_int) function triax_remarks(handle, text, length) bind(c, name='mud_triax_remarks')
       type(c_ptr), value :: handle, text
-      integer(c_int), value :: len
-      type(result_t), pointer :: result
+      integer(c_int), value :: length
+      type(table_t), pointer :: result
 
       triax_remarks = 0
       result => result_of(handle)
       if (.not. associated(result)) return
-      call put(result%table%remarks, text, len)
-      triax_remarks = length_of(result%table%remarks)
+      call put(result%remarks, text, length)
+      triax_remarks = len(result%remarks, c_int)
    end function triax_remarks
 
    !> Frees a result; nothing without a handle.
    subroutine triax_free(handle) bind(c, name='mud_triax_free')
       type(c_ptr), value :: handle
-      type(result_t), pointer :: result
+      type(table_t), pointer :: result
 
       result => result_of(handle)
       if (.not. associated(result)) return
@@ -170,31 +159,11 @@ contains
    !> Result that a handle points to; nothing without one.
    function result_of(handle) result(found)
       type(c_ptr), intent(in) :: handle
-      type(result_t), pointer :: found
+      type(table_t), pointer :: found
 
       nullify (found)
       if (c_associated(handle)) call c_f_pointer(handle, found)
    end function result_of
-
-   pure integer(c_int) function length_of(text)
-      character(*), intent(in) :: text
-
-      length_of = int(len(text), c_int)
-   end function length_of
-
-   !> A text of C, without its null.
-   function text_at(place) result(text)
-      type(c_ptr), intent(in) :: place
-      character(:), allocatable :: text
-      character(kind=c_char), pointer :: letters(:)
-      integer :: i
-
-      call c_f_pointer(place, letters, [strlen(place)])
-      allocate (character(size(letters)) :: text)
-      do i = 1, size(letters)
-         text(i:i) = letters(i)
-      end do
-   end function text_at
 
    !> Into a buffer of `length` bytes, cut to fit and always closed by a null.
    subroutine put(text, place, length)

@@ -13,9 +13,10 @@ module triax_case
    use triax_stage_reader, only: read_stage
    use material_point, only: material_t
    use material_registry, only: new_material
+   use parameter_groups, only: group_of_file
    use retention_curves, only: retention_t
    use retention_groups, only: new_retention, give_retention
-   use triax_point, only: soil_t, point_t, make_soil, start_point, restore_point, mean_stress, saturation, &
+   use triax_point, only: soil_t, point_t, start_point, restore_point, mean_stress, saturation, &
                           AXIAL, RADIAL
    implicit none (type, external)
    private
@@ -45,6 +46,7 @@ module triax_case
    real(wp), parameter :: LEAST = 1.0e-6_wp, MOST = 5.0e4_wp
    real(wp), parameter :: ZERO = 0.0_wp, ONE = 1.0_wp
    character(*), parameter :: KPA = KILOPASCAL%name
+   character(9), parameter :: GROUPS_OF_CASE(5) = [character(9) :: 'case', 'material', 'retention', 'initial', 'stage']
    character(*), parameter :: OF_AIR = ':air'   !< Condition of keys: a stage keeps the air.
    real(wp), parameter :: LIFTED = 1.0e-12_wp   !< Far above rounding: the library has raised the stress to p_min.
    real(wp), parameter :: ROUNDED = 1.0e-9_wp   !< Share of a stress by which a net stress may fall below zero.
@@ -88,14 +90,13 @@ contains
       character(*), intent(in) :: material   !< Path from the present folder, not from that of the case.
       type(group_t), allocatable, intent(inout) :: groups(:)
       type(fault_t), intent(inout) :: fault
-      type(group_t), allocatable :: own(:)
+      type(group_t) :: own
       integer :: place
 
-      call groups_of_text('&material file = "'//trim(material)//'" /', '', own, fault)
+      call group_of_file(material, own, fault)
       if (fault%code /= 0) return
-      own(1)%file = ''
       place = findloc(groups%name, 'material', dim=1)
-      if (place > 0) groups(place) = own(1)
+      if (place > 0) groups(place) = own
       if (place == 0) groups = [groups, own]
    end subroutine replace_material
 
@@ -108,32 +109,24 @@ contains
       type(case_t), intent(out) :: test
       type(fault_t), intent(inout) :: fault
       type(key_table_t) :: table
-      integer :: i, of_case, of_material, of_retention, of_initial, n_stages
+      integer :: i, earlier, of_case, of_material, of_initial, n_stages
 
       test%file = file
-      of_case = 0
-      of_material = 0
-      of_retention = 0
-      of_initial = 0
-      n_stages = 0
       do i = 1, size(groups)
-         select case (groups(i)%name)
-         case ('case')
-            call only_once(file, groups, i, of_case, fault)
-         case ('material')
-            call only_once(file, groups, i, of_material, fault)
-         case ('retention')
-            call only_once(file, groups, i, of_retention, fault)
-         case ('initial')
-            call only_once(file, groups, i, of_initial, fault)
-         case ('stage')
-            n_stages = n_stages + 1
-         case default
+         earlier = findloc(groups(:i - 1)%name, groups(i)%name, dim=1)
+         if (.not. any(groups(i)%name == GROUPS_OF_CASE)) then
             call raise(fault, EXIT_INPUT, at_line(file, groups(i)%line)//'there is no group &'//trim(groups(i)%name)// &
                        '; a case has &case, &material, &initial and one &stage or more, and may have &retention.')
-         end select
+         else if (earlier > 0 .and. groups(i)%name /= 'stage') then
+            call raise(fault, EXIT_INPUT, at_line(file, groups(i)%line)//'&'//trim(groups(i)%name)// &
+                       ' is given twice, first in line '//whole(groups(earlier)%line)//'; keep one of them.')
+         end if
          if (fault%code /= 0) return
       end do
+      of_case = findloc(groups%name, 'case', dim=1)
+      of_material = findloc(groups%name, 'material', dim=1)
+      of_initial = findloc(groups%name, 'initial', dim=1)
+      n_stages = count(groups%name == 'stage')
       if (of_material == 0) then
          call raise(fault, EXIT_INPUT, trim(file)//': there is no &material; add one with file = ''...''.')
       else if (of_initial == 0) then
@@ -142,7 +135,7 @@ contains
          call raise(fault, EXIT_INPUT, trim(file)//': there is no &stage; add one with control = ''...''.')
       end if
       if (fault%code /= 0) return
-      call read_material(groups(of_material), of_retention, groups, test, fault)
+      call read_material(groups(of_material), findloc(groups%name, 'retention', dim=1), groups, test, fault)
       if (fault%code == 0) call check_keys(groups, test%soil%law%unit, fault)
       if (fault%code /= 0) return
 
@@ -264,22 +257,8 @@ contains
          call new_retention(table, unused, fault)
          if (fault%code == 0) call refuse_idle_keys(table%keys, groups(of_retention), fault)
       end if
-      if (fault%code == 0) call make_soil(law, test%soil)
+      if (fault%code == 0) call move_alloc(law, test%soil%law)
    end subroutine read_material
-
-   subroutine only_once(file, groups, i, place, fault)
-      character(*), intent(in) :: file
-      type(group_t), intent(in) :: groups(:)
-      integer, intent(in) :: i
-      integer, intent(inout) :: place
-      type(fault_t), intent(inout) :: fault
-
-      if (place > 0) then
-         call raise(fault, EXIT_INPUT, at_line(file, groups(i)%line)//'&'//trim(groups(i)%name)// &
-                    ' is given twice, first in line '//whole(groups(place)%line)//'; keep one of them.')
-      end if
-      place = i
-   end subroutine only_once
 
    !> The sample where a test begins, and its air and water. Fault EXIT_INPUT: keys contradict each other, the air
    !> pressure is below vacuum, or the law refuses the start.

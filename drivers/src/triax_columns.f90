@@ -2,10 +2,11 @@
 !> Columns of the results: what they are called, what they mean, and their values at a point.
 module triax_columns
    use kinds, only: wp
+   use material_point, only: state_index
    use triax_stage, only: test_stage_t, general_control
    use triax_stage_run, only: stage_run_t
    use triax_point, only: soil_t, point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
-                          radial_stress, axial_strain, radial_strain, volumetric_strain, AXIAL
+                          radial_stress, volumetric_strain, AXIAL, RADIAL
    implicit none (type, external)
    private
    public :: column_t, COLUMNS, columns_shown, values_of
@@ -61,20 +62,12 @@ contains
       allocate (shown(0))
       do i = 1, merge(size(COLUMNS), PLAIN, any(general_control(stages%control)))
          select case (COLUMNS(i)%name)
-         case ('n_substep')
-            if (soil%i_n_substep == 0) cycle
-         case ('n_reset')
-            if (soil%i_n_reset == 0) cycle
-         case ('n_rate')
-            if (soil%i_n_rate == 0) cycle
-         case ('n_reject')
-            if (soil%i_n_reject == 0) cycle
-         case ('n_guard')
-            if (soil%i_n_guard == 0) cycle
+         case ('n_substep', 'n_reset', 'n_rate', 'n_reject', 'n_guard')
+            if (state_index(soil%law, trim(COLUMNS(i)%name)) == 0) cycle
+         case ('psi')
+            if (state_index(soil%law, 'state_parameter') == 0) cycle
          case ('p_a')
             if (.not. any(stages%keeps_air)) cycle
-         case ('psi')
-            if (soil%i_state_parameter == 0) cycle
          end select
          shown = [shown, i]
       end do
@@ -89,12 +82,12 @@ contains
       integer, intent(in) :: stage   !< Number of the stage; 0: the start.
       real(wp) :: values(size(COLUMNS))
 
-      values = [axial_strain(point), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
+      values = [point%strain(AXIAL), volumetric_strain(point), mean_stress(point), deviator_stress(point), &
                 void_ratio(soil, point), saturation(soil, point), &
-                state_value(point, soil%i_n_substep), state_value(point, soil%i_n_reset), point%stress(AXIAL), &
-                radial_stress(point), radial_strain(point), point%suction, run%pressure, &
-                state_value(point, soil%i_state_parameter), state_value(point, soil%i_n_rate), &
-                state_value(point, soil%i_n_reject), state_value(point, soil%i_n_guard), error, real(stage, wp), &
+                state_value(soil, point, 'n_substep'), state_value(soil, point, 'n_reset'), point%stress(AXIAL), &
+                radial_stress(point), 0.5_wp*sum(point%strain(RADIAL)), point%suction, run%pressure, &
+                state_value(soil, point, 'state_parameter'), state_value(soil, point, 'n_rate'), &
+                state_value(soil, point, 'n_reject'), state_value(soil, point, 'n_guard'), error, real(stage, wp), &
                 real(run%cycle, wp), run%r_u, point%p_a, point%stress, point%strain]
    end function values_of
 end module triax_columns

@@ -10,7 +10,7 @@ module triax_control
    use triax_stage, only: test_stage_t, quantity_rows, CONTROL_NAMES, ROWS, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
    use material_point, only: MOST_GUARDS, batch_report_t
    use triax_point, only: soil_t, point_t, tangent_t, update_point, save_update, update_sentence, void_ratio, &
-                          saturation, slope_is_exact, axial_strain, volumetric_strain, mean_stress, deviator_stress
+                          saturation, volumetric_strain, mean_stress, deviator_stress, AXIAL
    implicit none (type, external)
    private
    public :: plan_t, tally_t, plan_path, advance, lead, quantity, CONTROL_TOLERANCE
@@ -32,13 +32,11 @@ module triax_control
 
    !> One path segment: from the present state of the sample to the target of the constraints, in equal increments.
    type :: plan_t
-      integer :: control = 0
+      type(test_stage_t) :: stage                 !< The last of its changes is that of what leads.
       integer :: increments = 0                   !< An open way has 1, and goes on beyond it.
       real(wp) :: lead_start = 0.0_wp, lead_change = 0.0_wp
       real(wp) :: interval = 0.0_wp               !< Interval of the rows, in the unit of what leads.
-      real(wp) :: strain_rows(6, ROWS) = 0.0_wp, stress_rows(6, ROWS) = 0.0_wp, changes(ROWS) = 0.0_wp
       logical :: by_suction = .false.             !< The suction moves alone and makes the increments.
-      logical :: effective = .false., keeps_water = .false., keeps_air = .false.
       type(closed_air_t) :: closed                !< Where the air is kept.
       real(wp) :: strain_start(6) = 0.0_wp, stress_start(6) = 0.0_wp, suction_start = 0.0_wp, water_start = 0.0_wp
       logical :: given(7) = .false.               !< Strains, and suction, that the constraints give directly.
@@ -77,18 +75,12 @@ contains
       integer :: i
       logical :: good
 
-      plan%control = stage%control
-      plan%strain_rows = stage%strain_rows
-      plan%stress_rows = stage%stress_rows
-      plan%changes = stage%changes
-      plan%effective = stage%effective
-      plan%keeps_water = stage%keeps_water
-      plan%keeps_air = stage%keeps_air
-      if (plan%keeps_air) plan%closed = closing(soil%air, void_ratio(soil, point), saturation(soil, point), point%p_a, &
-                                               point%suction)
+      plan%stage = stage
+      if (stage%keeps_air) plan%closed = closing(soil%air, void_ratio(soil, point), saturation(soil, point), &
+                                                 point%p_a, point%suction)
       plan%strain_start = point%strain
       plan%suction_start = point%suction
-      plan%stress_start = controlled_stress(soil, plan, point)
+      plan%stress_start = controlled_stress(soil, stage, point)
       plan%water_start = water(soil, point)
       select case (stage%lead)
       case (BY_SUCTION)
@@ -101,7 +93,7 @@ contains
       case default
          plan%lead_start = quantity(soil, stage, stage%lead, point)
          plan%lead_change = target - plan%lead_start
-         plan%changes(ROWS) = plan%lead_change
+         plan%stage%changes(ROWS) = plan%lead_change
       end select
       plan%increments = stage%parts*equal_parts(plan%lead_change, stage%increment)
       plan%interval = stage%interval
@@ -121,14 +113,14 @@ contains
       end if
       ! A constraint on one strain gives it, and six on strains alone give all.
       do i = 1, ROWS
-         if (any(abs(plan%stress_rows(:, i)) > 0.0_wp) .or. count(abs(plan%strain_rows(:, i)) > 0.0_wp) /= 1) cycle
-         where (abs(plan%strain_rows(:, i)) > 0.0_wp)
+         if (any(abs(stage%stress_rows(:, i)) > 0.0_wp) .or. count(abs(stage%strain_rows(:, i)) > 0.0_wp) /= 1) cycle
+         where (abs(stage%strain_rows(:, i)) > 0.0_wp)
             plan%given(:6) = .true.
-            plan%given_change(:6) = plan%changes(i)/plan%strain_rows(:, i)
+            plan%given_change(:6) = plan%stage%changes(i)/stage%strain_rows(:, i)
          end where
       end do
-      if (all(abs(plan%stress_rows) <= 0.0_wp)) then
-         call solve(transpose(plan%strain_rows), plan%changes, strain, good)
+      if (all(abs(stage%stress_rows) <= 0.0_wp)) then
+         call solve(transpose(stage%strain_rows), plan%stage%changes, strain, good)
          if (good) plan%given(:6) = .true.
          if (good) plan%given_change(:6) = strain
       end if
@@ -157,17 +149,14 @@ contains
       type(test_stage_t), intent(in) :: stage
       integer, intent(in) :: which   !< BY_*
       type(point_t), intent(in) :: point
-      type(plan_t) :: plan
       real(wp) :: strain_row(6), stress_row(6)
 
-      plan%effective = stage%effective
-      plan%keeps_air = stage%keeps_air
       call quantity_rows(which, strain_row, stress_row)
-      quantity = dot_product(strain_row, point%strain) + dot_product(stress_row, controlled_stress(soil, plan, point))
+      quantity = dot_product(strain_row, point%strain) + dot_product(stress_row, controlled_stress(soil, stage, point))
    end function quantity
 
    !> Increment k of a way, or the part of it up to `upto`. A part that fails is halved and retried, and the next ones
-   !> grow again. By Newton iterations, where slope_is_exact is false by those of Broyden (1965). Fault EXIT_RUN:
+   !> grow again. By Newton iterations, where the law has no exact tangent by those of Broyden (1965). Fault EXIT_RUN:
    !> max_updates are done, or a part was halved MAX_CUTS times, with what the law or the control says of it;
    !> EXIT_OUTPUT: the update that was refused cannot be saved.
    subroutine advance(soil, plan, k, upto, point, tally, fault)
@@ -186,8 +175,8 @@ contains
       share = upto
       do while (done < upto)
          if (tally%updates >= tally%max_updates) then
-            call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%control))//' stage, at eps_a '// &
-                       short(axial_strain(point))//': '//whole(tally%updates)// &
+            call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%stage%control))//' stage, at eps_a '// &
+                       short(point%strain(AXIAL))//': '//whole(tally%updates)// &
                        ' updates of the material are done, and max_updates of &case allows '// &
                        whole(tally%max_updates)//'.')
             return
@@ -201,12 +190,13 @@ contains
             fault = trouble
             return
          else
+            plan%rate = 0.0_wp
             tally%cuts = tally%cuts + 1
             share = 0.5_wp*share
             if (share < upto*0.5_wp**MAX_CUTS) then
                name = ' '//trim(soil%law%unit%name)
-               call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%control))//' stage, increment '//whole(k)//' of '// &
-                          whole(plan%increments)//', at eps_a '//short(axial_strain(point))//', eps_v '// &
+               call raise(fault, EXIT_RUN, trim(CONTROL_NAMES(plan%stage%control))//' stage, increment '//whole(k)// &
+                          ' of '//whole(plan%increments)//', at eps_a '//short(point%strain(AXIAL))//', eps_v '// &
                           short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//name//', q '// &
                           short(deviator_stress(point))//name//', suction '//short(point%suction)//name// &
                           '; the increment was halved '//whole(MAX_CUTS)//' times. '//trim(trouble%text))
@@ -251,24 +241,20 @@ contains
             if (tally%refusal == '') tally%refusal = fault%text
             if (len_trim(tally%save_to) > 0 .and. .not. tally%saved) then
                tally%saved = .true.
-               call save_update(tally%save_to, 'mud_triax, '//trim(CONTROL_NAMES(plan%control))// &
+               call save_update(tally%save_to, 'mud_triax, '//trim(CONTROL_NAMES(plan%stage%control))// &
                                 ' stage, increment '//whole(k)//' of '//whole(plan%increments), soil, point, x(:6), &
                                 x(SUCTION), fault)
             end if
-            plan%rate = 0.0_wp
             return
          end if
-         if (plan%keeps_air) call close_air(soil, plan, after, fault)
-         if (fault%code /= 0) then
-            plan%rate = 0.0_wp
-            return
-         end if
+         if (plan%stage%keeps_air) call close_air(soil, plan, after, fault)
+         if (fault%code /= 0) return
          if (all(plan%given)) exit
          call find_residual(soil, plan, progress, x, point, after, residual, error)
          if (tally%residuals) write (output_unit, '(i0, a, i0, a, es10.3)') k, ',', iteration, ',', error
          if (error <= tally%tolerance) exit
          ! In the slope suction is counted in strains: a stress over a stiffness.
-         if (iteration == 1 .or. slope_is_exact(soil)) then
+         if (iteration == 1 .or. soil%law%exact_tangent) then
             stiffness = max(maxval(abs(tangent%dsig_deps)), tiny(stiffness)**0.5_wp)
             slope = slope_of(soil, plan, tangent, after)
             slope(:, SUCTION) = slope(:, SUCTION)*stiffness
@@ -280,8 +266,7 @@ contains
             call raise(fault, EXIT_RUN, 'The stiffness for the prescribed stresses is singular: the sample cannot '// &
                        'carry them'//trim(merge(', perhaps because it became saturated at constant water content.', &
                                                 '.                                                               ', &
-                                                plan%keeps_water)))
-            plan%rate = 0.0_wp
+                                                plan%stage%keeps_water)))
             return
          end if
          last_residual = residual
@@ -294,7 +279,6 @@ contains
             call raise(fault, EXIT_RUN, 'The prescribed stresses are missed by '//short(error)//' of their value '// &
                        'after '//whole(MAX_ITERATIONS)//' iterations; allowed is '//short(tally%tolerance)// &
                        '. A smaller increment may help, unless the sample cannot carry these stresses any more.')
-            plan%rate = 0.0_wp
             return
          end if
          tally%solved = tally%solved + 1
@@ -320,19 +304,20 @@ contains
       real(wp) :: stress_moved(6), size_of(6), strain_left, scale
       integer :: i
 
-      stress_moved = controlled_stress(soil, plan, after) - plan%stress_start
+      stress_moved = controlled_stress(soil, plan%stage, after) - plan%stress_start
       size_of = maxval(abs(after%stress(:NORMAL)))
       size_of(:NORMAL) = abs(after%stress(:NORMAL))
       error = 0.0_wp
       do i = 1, ROWS
          ! What strain still has to do is counted from the increment: a difference of large strains would round.
-         strain_left = dot_product(plan%strain_rows(:, i), x(:6) - (plan%strain_start - before%strain))
-         residual(i) = strain_left + dot_product(plan%stress_rows(:, i), stress_moved) - plan%changes(i)*progress
-         scale = sum(abs(plan%stress_rows(:, i))*size_of) + sum(abs(plan%strain_rows(:, i)))* &
+         strain_left = dot_product(plan%stage%strain_rows(:, i), x(:6) - (plan%strain_start - before%strain))
+         residual(i) = strain_left + dot_product(plan%stage%stress_rows(:, i), stress_moved) &
+                       - plan%stage%changes(i)*progress
+         scale = sum(abs(plan%stage%stress_rows(:, i))*size_of) + sum(abs(plan%stage%strain_rows(:, i)))* &
                  max(maxval(abs(x(:6))), ROUNDING*maxval(abs(after%strain)))
          error = max(error, abs(residual(i))/max(scale, tiny(scale)))
       end do
-      if (plan%keeps_water) then
+      if (plan%stage%keeps_water) then
          residual(SUCTION) = water(soil, after) - water_kept(soil, plan, after)
          error = max(error, abs(residual(SUCTION))/plan%water_start)
       else
@@ -354,21 +339,21 @@ contains
       s_w = saturation(soil, point)
       by_strain = tangent%dsig_deps
       by_suction = tangent%dsig_dpc
-      if (.not. plan%effective) then
+      if (.not. plan%stage%effective) then
          by_strain = by_strain - point%suction*outer(IDENTITY, tangent%dsw_deps)
          by_suction = by_suction - (s_w + point%suction*tangent%dsw_dpc)*IDENTITY
       end if
       air = air_now_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
-      if (plan%keeps_air) air = air_of(plan%closed, e, point%suction)
-      if (plan%keeps_air .and. .not. plan%effective) then
+      if (plan%stage%keeps_air) air = air_of(plan%closed, e, point%suction)
+      if (plan%stage%keeps_air .and. .not. plan%stage%effective) then
          by_strain = by_strain - air%by_e*(1.0_wp + e)*outer(IDENTITY, IDENTITY)
          by_suction = by_suction + air%by_suction*IDENTITY
       end if
-      slope(:6, :6) = transpose(plan%strain_rows) + matmul(transpose(plan%stress_rows), by_strain)
-      slope(:6, SUCTION) = matmul(transpose(plan%stress_rows), by_suction)
+      slope(:6, :6) = transpose(plan%stage%strain_rows) + matmul(transpose(plan%stage%stress_rows), by_strain)
+      slope(:6, SUCTION) = matmul(transpose(plan%stage%stress_rows), by_suction)
       slope(SUCTION, :) = 0.0_wp
       slope(SUCTION, SUCTION) = 1.0_wp
-      if (plan%keeps_water) then
+      if (plan%stage%keeps_water) then
          ! de = -(1+e) d eps_v
          slope(SUCTION, :6) = e*tangent%dsw_deps - (s_w - air%water_by_e)*(1.0_wp + e)*IDENTITY
          slope(SUCTION, SUCTION) = e*tangent%dsw_dpc - air%water_by_suction
@@ -401,23 +386,23 @@ contains
       type(air_now_t) :: air
 
       w = plan%water_start
-      if (.not. plan%keeps_air) return
+      if (.not. plan%stage%keeps_air) return
       air = air_of(plan%closed, void_ratio(soil, point), point%suction)
       w = air%water
    end function water_kept
 
-   !> The stress that a plan prescribes: net, sigma' - S_w p_c on the normal components, total where the air is kept, or
-   !> effective [unit of stress].
-   pure function controlled_stress(soil, plan, point) result(stress)
+   !> The stress that a stage prescribes: net, sigma' - S_w p_c on the normal components, total where the air is kept,
+   !> or effective [unit of stress].
+   pure function controlled_stress(soil, stage, point) result(stress)
       type(soil_t), intent(in) :: soil
-      type(plan_t), intent(in) :: plan
+      type(test_stage_t), intent(in) :: stage
       type(point_t), intent(in) :: point
       real(wp) :: stress(6)
 
       stress = point%stress
-      if (plan%effective) return
+      if (stage%effective) return
       stress = stress - saturation(soil, point)*point%suction*IDENTITY
-      if (plan%keeps_air) stress = stress + point%p_a*IDENTITY
+      if (stage%keeps_air) stress = stress + point%p_a*IDENTITY
    end function controlled_stress
 
    !> Volume of water per volume of solids, S_w e [-].

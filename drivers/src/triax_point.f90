@@ -12,26 +12,23 @@ module triax_point
    private
    public :: soil_t, point_t, tangent_t
    public :: AXIAL, RADIAL
-   public :: make_soil, start_point, restore_point, update_point, save_update, update_sentence, slope_is_exact
-   public :: mean_stress, deviator_stress, radial_stress, axial_strain, radial_strain, volumetric_strain, void_ratio, &
+   public :: start_point, restore_point, update_point, save_update, update_sentence
+   public :: mean_stress, deviator_stress, radial_stress, volumetric_strain, void_ratio, &
              saturation, state_value
 
    integer, parameter :: AXIAL = 3            !< Component along the axis of the sample.
    integer, parameter :: RADIAL(2) = [1, 2]   !< Components across it.
    integer, parameter :: BUFFER = 1000
 
-   !> A law, and where its state keeps what the driver shows: places from 1, 0 where the law has no such variable.
    type :: soil_t
       class(material_t), allocatable :: law
-      integer :: i_state_parameter = 0
       type(air_t) :: air
-      integer :: i_n_substep = 0, i_n_reset = 0, i_n_rate = 0, i_n_reject = 0, i_n_guard = 0
    end type soil_t
 
    !> A sample at one moment.
    type :: point_t
       real(wp) :: stress(6) = 0.0_wp   !< Effective stress [unit of stress of the law].
-      real(wp) :: strain(6) = 0.0_wp   !< Strain since the start [-].
+      real(wp) :: strain(6) = 0.0_wp   !< Natural strain since the start [-].
       real(wp) :: suction = 0.0_wp     !< [unit of stress of the law]
       real(wp) :: p_a = 0.0_wp         !< Air pressure, above the atmosphere [unit of stress of the law].
       real(wp), allocatable :: state(:, :)   !< One column.
@@ -46,20 +43,6 @@ module triax_point
    end type tangent_t
 
 contains
-   !> Takes over a law. The caller has it no more.
-   subroutine make_soil(law, soil)
-      class(material_t), allocatable, intent(inout) :: law
-      type(soil_t), intent(out) :: soil
-
-      call move_alloc(law, soil%law)
-      soil%i_state_parameter = state_index(soil%law, 'state_parameter')
-      soil%i_n_substep = state_index(soil%law, 'n_substep')
-      soil%i_n_reset = state_index(soil%law, 'n_reset')
-      soil%i_n_rate = state_index(soil%law, 'n_rate')
-      soil%i_n_reject = state_index(soil%law, 'n_reject')
-      soil%i_n_guard = state_index(soil%law, 'n_guard')
-   end subroutine make_soil
-
    !> A sample at rest under an effective stress. Compression positive. Fault EXIT_INPUT: the law refuses it, as its
    !> sentence says. Where s_w > 0 the law starts from that degree of saturation.
    subroutine start_point(soil, stress, suction, ratio, s_w, point, fault)
@@ -150,13 +133,6 @@ contains
       if (text /= '') call raise(fault, EXIT_OUTPUT, '--save-failed '//trim(file)//': '//trim(text)//'.')
    end subroutine save_update
 
-   !> True if the slope is the derivative of the update itself, so that Newton's method is quadratic with it.
-   pure logical function slope_is_exact(soil)
-      type(soil_t), intent(in) :: soil
-
-      slope_is_exact = soil%law%exact_tangent
-   end function slope_is_exact
-
    !> The law's sentence for a report.
    function update_sentence(soil, report) result(sentence)
       type(soil_t), intent(in) :: soil
@@ -189,20 +165,6 @@ contains
       deviator_stress = point%stress(AXIAL) - radial_stress(point)
    end function deviator_stress
 
-   !> Natural axial strain since the start of the test, compression positive [-].
-   pure real(wp) function axial_strain(point)
-      type(point_t), intent(in) :: point
-
-      axial_strain = point%strain(AXIAL)
-   end function axial_strain
-
-   !> Mean of the two natural radial strains since the start of the test, compression positive [-].
-   pure real(wp) function radial_strain(point)
-      type(point_t), intent(in) :: point
-
-      radial_strain = 0.5_wp*sum(point%strain(RADIAL))
-   end function radial_strain
-
    !> Natural volumetric strain since the start of the test, compression positive [-].
    pure real(wp) function volumetric_strain(point)
       type(point_t), intent(in) :: point
@@ -226,11 +188,14 @@ contains
       saturation = soil%law%saturation(point%state(:, 1))
    end function saturation
 
-   !> One state variable, by its place; 0 where the law has none. In its own unit.
-   pure real(wp) function state_value(point, place)
+   !> One state variable, by its name; 0 where the law has none of that name. In its own unit.
+   pure real(wp) function state_value(soil, point, name)
+      type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point
-      integer, intent(in) :: place   !< From 1; 0: none.
+      character(*), intent(in) :: name
+      integer :: place
 
+      place = state_index(soil%law, name)
       state_value = 0.0_wp
       if (place > 0) state_value = point%state(place, 1)
    end function state_value

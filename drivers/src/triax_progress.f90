@@ -4,16 +4,17 @@ module triax_progress
    use, intrinsic :: iso_fortran_env, only: output_unit, error_unit
    use kinds, only: wp
    use library_tables, only: library_version
+   use material_point, only: state_index
    use texts, only: short, whole
    use triax_case, only: case_t
    use triax_control, only: tally_t
    use triax_output, only: table_t
-   use triax_point, only: point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, axial_strain, &
-                          volumetric_strain
+   use triax_point, only: point_t, void_ratio, saturation, state_value, mean_stress, deviator_stress, &
+                          volumetric_strain, AXIAL
    use wall_clock, only: clock
    implicit none (type, external)
    private
-   public :: timer_t, start_timer, progress_is_due, show_progress, show_summary
+   public :: timer_t, progress_is_due, show_progress, show_summary
 
    real(wp), parameter :: FIRST_PROGRESS = 2.0_wp   !< Runs shorter than this show none [s].
 
@@ -25,13 +26,6 @@ module triax_progress
    end type timer_t
 
 contains
-   !> Starts the clock of a run.
-   subroutine start_timer(timer)
-      type(timer_t), intent(out) :: timer
-
-      timer%start = clock()
-   end subroutine start_timer
-
    !> A line on the error output after 2 s, and then each time the run has become half as long again.
    subroutine show_progress(timer, share, what)
       type(timer_t), intent(inout) :: timer
@@ -68,14 +62,14 @@ contains
       name = ' '//trim(test%soil%law%unit%name)
       associate (soil => test%soil)
          write (output_unit, '(a)') trim(test%name)//' ('//trim(test%material)//', MUD '//library_version()//')'
-         write (output_unit, '(a)') '   end        eps_a '//short(axial_strain(point))//', eps_v '// &
+         write (output_unit, '(a)') '   end        eps_a '//short(point%strain(AXIAL))//', eps_v '// &
             short(volumetric_strain(point))//', p'' '//short(mean_stress(point))//name//', q '// &
             short(deviator_stress(point))//name//', e '//short(void_ratio(soil, point))//', S_w '// &
-            short(saturation(soil, point))//of_state(', psi ', soil%i_state_parameter, '')
+            short(saturation(soil, point))//psi()
          write (output_unit, '(a)') '   work       '//whole(tally%increments)//' increments'// &
             counted(', ', tally%cuts, ' cuts')//', '//whole(tally%updates)//' updates'// &
-            counter(soil%i_n_substep, ' substeps')//counter(soil%i_n_reject, ' rejected')// &
-            counter(soil%i_n_rate, ' rates')//counter(soil%i_n_reset, ' resets')//'; '// &
+            counter('n_substep', ' substeps')//counter('n_reject', ' rejected')// &
+            counter('n_rate', ' rates')//counter('n_reset', ' resets')//'; '// &
             short(real(nint(100.0_wp*(clock() - timer%start)), wp)/100.0_wp)//' s'
          guards = ''
          do i = 1, soil%law%n_guards
@@ -94,14 +88,14 @@ contains
       end associate
    contains
       !> A counter of the state, behind a comma; nothing where it is 0 or the law has none.
-      function counter(place, after) result(text)
-         integer, intent(in) :: place
-         character(*), intent(in) :: after
+      function counter(name, after) result(text)
+         character(*), intent(in) :: name, after
          character(:), allocatable :: text
+         real(wp) :: value
 
          text = ''
-         if (place == 0) return
-         if (state_value(point, place) > 0.0_wp) text = ', '//short(state_value(point, place))//after
+         value = state_value(test%soil, point, name)
+         if (value > 0.0_wp) text = ', '//short(value)//after
       end function counter
 
       !> A count between two texts; nothing where it is 0.
@@ -114,14 +108,13 @@ contains
          if (number > 0) text = before//whole(number)//after
       end function counted
 
-      !> A state variable between two texts; nothing where the law has none.
-      function of_state(before, place, after) result(text)
-         character(*), intent(in) :: before, after
-         integer, intent(in) :: place
+      !> The state parameter, where the law has one.
+      function psi() result(text)
          character(:), allocatable :: text
 
          text = ''
-         if (place > 0) text = before//short(state_value(point, place))//after
-      end function of_state
+         if (state_index(test%soil%law, 'state_parameter') > 0) &
+            text = ', psi '//short(state_value(test%soil, point, 'state_parameter'))
+      end function psi
    end subroutine show_summary
 end module triax_progress

@@ -44,11 +44,12 @@ module mud_batch
 
    !> Arrays of a call, shaped by its counts; those that the host left out are not associated.
    type :: arrays_t
-      integer(c_int), pointer, contiguous :: list(:), material(:), codes(:)
-      real(c_double), pointer, contiguous :: stress0(:, :), statev0(:, :), strain(:, :), suction(:), void_ratio(:), &
-                                             saturation(:), stress1(:, :), statev1(:, :), c(:, :, :), c_pc(:, :), &
-                                             sw_e(:, :), sw_pc(:), s_w(:)
-      type(report_t), pointer, contiguous :: reports(:)
+      integer(c_int), pointer, contiguous :: list(:) => null(), material(:) => null(), codes(:) => null()
+      real(c_double), pointer, contiguous :: stress0(:, :) => null(), statev0(:, :) => null(), strain(:, :) => null(), &
+         suction(:) => null(), void_ratio(:) => null(), saturation(:) => null(), stress1(:, :) => null(), &
+         statev1(:, :) => null(), c(:, :, :) => null(), c_pc(:, :) => null(), sw_e(:, :) => null(), &
+         sw_pc(:) => null(), s_w(:) => null()
+      type(report_t), pointer, contiguous :: reports(:) => null()
    end type arrays_t
 contains
    !> Fills STATEV of points that begin. Tension positive, stress and suction in the unit of p_atm, void ratio [-].
@@ -185,9 +186,6 @@ contains
       integer :: n, m, i, k
       logical :: writes
 
-      nullify (arrays%list, arrays%material, arrays%codes, arrays%stress0, arrays%statev0, arrays%strain, &
-               arrays%suction, arrays%void_ratio, arrays%saturation, arrays%stress1, arrays%statev1, arrays%c, &
-               arrays%c_pc, arrays%sw_e, arrays%sw_pc, arrays%s_w, arrays%reports)
       n = given%n
       m = given%n_statev
       if (c_associated(given%list)) then

@@ -5,17 +5,18 @@ module mud_point
    use mud_blocks, only: blocks_t, elastic_blocks, continuum_blocks
    use mud_checks, only: check_increment
    use mud_consistent, only: sensitivity_t, no_sensitivity
-   use mud_cutoff, only: lifted
-   use mud_extent, only: extent_of
+   use mud_cutoff, only: lifted, soil_void_ratio
+   use mud_elastic, only: bulk_modulus
    use mud_follow, only: follow_phase, follow_turn, follow_substep
-   use mud_increment, only: new_increment, take_phase, void_ratio_at, suction_at, end_in_domain
+   use mud_increment, only: increment_t, new_increment, take_phase, void_ratio_at, suction_at, end_in_domain
    use mud_integration, only: integration_t
    use mud_order, only: look_for_stiffness
    use mud_params, only: params_t
    use mud_phases, only: cut_t, list_cuts, MAX_CUTS
    use mud_retention, only: saturation_t, course_t, begin_course, take_branch, turn_around, end_course
+   use mud_rates, only: stress_ratio
    use mud_start, only: finish_state, has_tension
-   use mud_state, only: E_LOWER, E_UPPER, E_OPEN
+   use mud_state, only: state_t, E_LOWER, E_UPPER, E_OPEN
    use mud_status, only: fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, end_substep, end_phase
@@ -158,4 +159,18 @@ contains
       blocks%dsw_dev = -(1.0_wp + it%state%e)*sat%ds_de + with_turn(2)
       if (has_tension(it%state%sigma)) it%counters%tensile = 1
    end subroutine end_update
+
+   !> Size of an increment in units of strain [-]: suction counts with the bulk modulus. docs/theory/integration.md
+   !> section 3.
+   pure real(wp) function extent_of(par, inc, state) result(size)
+      type(params_t), intent(in) :: par
+      type(increment_t), intent(in) :: inc
+      type(state_t), intent(in) :: state
+      real(wp) :: p, r(6)
+
+      size = inc%length
+      if (abs(inc%d_pc) <= 0.0_wp) return
+      call stress_ratio(par, state%sigma, p, r)
+      size = size + abs(inc%d_pc)/bulk_modulus(par%elastic, soil_void_ratio(state), p)
+   end function extent_of
 end module mud_point

@@ -16,28 +16,19 @@ module mud_event_mechanism
    type(event_t), parameter :: MECHANISM = &
       event_t(ORDINARY, RATE_THERE, BEFORE, .true., BY_MECHANISM, EXACT, EXACT_TRIALS)
 contains
-   !> True of a substep with an error that a kink may have made, and a kink [-].
+   !> True of a substep with an error that a kink may have made [-], and where the isotropic mechanism begins or ends to
+   !> act. Its rates have a kink there, which is sharp while suction changes: a substep across it has an error that
+   !> depends on where in it the kink lies, and Newton's method in a host sees that as noise.
    pure logical function mechanism_may_switch(par, inc, trial, error)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: error
 
-      mechanism_may_switch = error > SHARP_KINK*par%tolerance
-      if (mechanism_may_switch) mechanism_may_switch = mechanism_switches(inc, trial)
+      mechanism_may_switch = error > SHARP_KINK*par%tolerance .and. inc%suction%bonds .and. abs(inc%d_pc) > 0.0_wp
+      if (mechanism_may_switch) &
+         mechanism_may_switch = switches(trial%w(1)%iso_drive, trial%w(inc%scheme%stages)%iso_drive)
    end function mechanism_may_switch
-
-   !> True where the isotropic mechanism begins or ends to act inside the substep. Its rates have a kink there, which is
-   !> sharp while suction changes: a substep across it has an error that depends on where in it the kink lies, and
-   !> Newton's method in a host sees that as noise.
-   pure logical function mechanism_switches(inc, trial)
-      type(increment_t), intent(in) :: inc
-      type(trial_t), intent(in) :: trial
-
-      mechanism_switches = inc%suction%bonds .and. abs(inc%d_pc) > 0.0_wp
-      if (mechanism_switches) &
-         mechanism_switches = switches(trial%w(1)%iso_drive, trial%w(inc%scheme%stages)%iso_drive)
-   end function mechanism_switches
 
    !> Drive of the mechanism over that at the start [-].
    pure real(wp) function mechanism_function(trial, w)

@@ -35,10 +35,10 @@ module mud_substepping
       type(control_t) :: control
    end type stepping_t
 
-   !> Turn of the domain, some degrees, from which on the higher order follows it: it is a transient that modified Euler
-   !> pays for with many substeps, and whose errors add up along turning paths [-].
    !> Part of a substep below which what an event leaves of it has no length [-].
    real(wp), parameter :: NO_LENGTH = 1.0e-6_wp
+   !> Turn of the domain, some degrees, from which on the higher order follows it: it is a transient that modified Euler
+   !> pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
    !> The rest of a phase is divided into a whole number of pieces up to FEW, beyond into a power of the FEW-th root of
    !> 2. A piece may be STRETCHED times as long as error control proposes, whose margin is a tenth [-].

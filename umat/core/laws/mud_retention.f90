@@ -525,12 +525,11 @@ contains
       type(retention_t), intent(in) :: self
       real(wp), intent(in) :: log_x, s_w
       type(path_t) :: path
-      type(on_main_curve_t) :: dry, wet
+      real(wp) :: bounds(2)
 
       path = path_t(log_x, s_w, NO_TURNS)
-      dry = on_main_curve(self, main_curve(self, .true.), log_x)
-      wet = on_main_curve(self, main_curve(self, .false.), log_x)
-      path%turns%dries = abs(s_w - wet%s_w) > ON_CURVE*self%s_max .or. abs(s_w - dry%s_w) <= ON_CURVE*self%s_max
+      bounds = main_curves(self, log_x)
+      path%turns%dries = abs(s_w - bounds(1)) > ON_CURVE*self%s_max .or. abs(s_w - bounds(2)) <= ON_CURVE*self%s_max
    end function begin_path
 
    !> The turning points with which a point moves to a suction: a reversal adds the present one, and what is passed on
@@ -721,6 +720,7 @@ contains
       logical, intent(out) :: cleared
       type(retention_t) :: branch
       type(along_t) :: along
+      real(wp) :: bounds(2)
       logical :: limited
 
       cleared = .false.
@@ -728,7 +728,8 @@ contains
          path = path_t(NO_SUCTION, self%s_max, NO_TURNS)
          return
       end if
-      path%s_w = between(self, path%log_x, path%s_w)
+      bounds = main_curves(self, path%log_x)
+      path%s_w = max(min(path%s_w, bounds(2)), bounds(1))
       if (path%turns%depth == 0) return
       cleared = .not. are_nested(path)
       if (.not. cleared) then
@@ -756,25 +757,13 @@ contains
       end do
    end function are_nested
 
-   !> S_w between the main curves at ln(x/P_a) [-].
-   pure real(wp) function between(self, log_x, s_w)
+   !> Degrees of saturation of the main wetting and the main drying curve at ln(x/P_a) [-].
+   pure function main_curves(self, log_x) result(bounds)
       type(retention_t), intent(in) :: self
-      real(wp), intent(in) :: log_x, s_w
+      real(wp), intent(in) :: log_x
+      real(wp) :: bounds(2)
       type(on_main_curve_t) :: dry, wet
 
-      dry = on_main_curve(self, main_curve(self, .true.), log_x)
-      wet = on_main_curve(self, main_curve(self, .false.), log_x)
-      between = max(min(s_w, dry%s_w), wet%s_w)
-   end function between
-
-   !> Degrees of saturation of the main wetting and the main drying curve [-].
-   pure function main_curves(self, p_c, e) result(bounds)
-      type(retention_t), intent(in) :: self
-      real(wp), intent(in) :: p_c, e
-      real(wp) :: bounds(2), log_x
-      type(on_main_curve_t) :: dry, wet
-
-      log_x = log_suction(self, p_c, e)
       dry = on_main_curve(self, main_curve(self, .true.), log_x)
       wet = on_main_curve(self, main_curve(self, .false.), log_x)
       bounds = [wet%s_w, dry%s_w]
@@ -790,7 +779,7 @@ contains
       type(mud_status_t), intent(inout) :: status
       real(wp) :: bounds(2)
 
-      bounds = main_curves(self, p_c, e)
+      bounds = main_curves(self, log_suction(self, p_c, e))
       if (is_finite(s_w)) then
          if (abs(s_w) <= 0.0_wp) s_w = bounds(2)
       end if
@@ -807,7 +796,7 @@ contains
       real(wp) :: bounds(2), rounding
 
       if (.not. self%hysteresis .or. status%code /= MUD_OK) return
-      bounds = main_curves(self, p_c, e)
+      bounds = main_curves(self, log_suction(self, p_c, e))
       rounding = PRESET_ROUNDING*self%s_max
       if (is_finite(s_w)) then
          if (s_w >= bounds(1) - rounding .and. s_w <= bounds(2) + rounding) return
