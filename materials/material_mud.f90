@@ -1,7 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> MUD through its public interface, its parameters checked and prepared once.
 module material_mud
-   use, intrinsic :: iso_c_binding, only: c_int, c_null_char
+   use, intrinsic :: ieee_exceptions, only: ieee_usual, ieee_get_halting_mode, ieee_set_flag, ieee_set_halting_mode
+   use, intrinsic :: iso_c_binding, only: c_int, c_loc, c_null_char
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use key_table, only: key_table_t
@@ -9,10 +10,10 @@ module material_mud
                              statev_name
    use material_point, only: range_t, material_t, response_t, batch_report_t, remark_t, NAME_LENGTH, NO_PRESET
    use retention_curves, only: saturation_t
-   use mud_interface, only: mud_report, mud_blocks, mud_prepared_size, mud_prepared_statev, mud_prepare, mud_init, &
-                            mud_update, &
-                            mud_saturation, mud_save_increment, mud_message, MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, &
-                            MUD_TANGENT_CONSISTENT
+   use mud_interface, only: mud_report, mud_blocks, mud_points, mud_prepared_size, mud_prepared_statev, &
+                            mud_prepared_lanes, mud_prepare, mud_init, mud_update, mud_update_points, mud_saturation, &
+                            mud_save_increment, mud_message, &
+                            MUD_TANGENT_NONE, MUD_TANGENT_ELASTIC, MUD_TANGENT_CONSISTENT, MUD_LANES, MUD_NOT_PREPARED
    use namelists, only: group_t
    use parameter_groups, only: read_parameters
    use stress_units, only: unit_of_atmosphere, KILOPASCAL
@@ -102,6 +103,7 @@ contains
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
       law%n_state = mud_prepared_statev(law%prepared)
+      law%has_lanes = mud_prepared_lanes(law%prepared) == 1
       allocate (law%state_names(law%n_state))
       do i = 1, law%n_state
          law%state_names(i) = statev_name(i)
@@ -217,7 +219,8 @@ contains
       if (preset > 0.0_wp) text = 'saturation of &initial must lie between the main curves at this suction: '//text
    end subroutine initial_state
 
-   !> Point by point: the library's batch would start a team of threads for every element, and programs have theirs.
+   !> Point by point, or side by side: the library's batch is on the caller's thread, for programs have threads of their
+   !> own.
    subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
                      report)
       class(mud_t), intent(in) :: self
@@ -227,7 +230,7 @@ contains
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
       type(batch_report_t), intent(out) :: report
-      type(mud_report) :: of_point
+      type(mud_report) :: of_point(n)
       type(mud_blocks) :: blocks
       real(wp) :: stress_(6), state_(size(state, 1))
       integer(c_int) :: code, kind
@@ -235,23 +238,27 @@ contains
 
       kind = MUD_TANGENT_NONE
       if (with_tangent) kind = self%tangent
+      if (self%lanes) call update_side_by_side(self, n, stress, state, strain, suction(:n) + d_suction(:n), kind, &
+                                               response, new_state, of_point)
       do g = 1, n
-         response%stress(:, g) = stress(:, g)
-         if (self%fade < 1.0_wp) then
+         if (self%lanes) then
+            code = of_point(g)%status
+         else if (self%fade < 1.0_wp) then
             call faded(self, stress(:, g), state(:, g), stress_, state_)
             code = mud_update(self%prepared, stress_, state_, self%n_state, strain(:, g), suction(g) + d_suction(g), &
-                              kind, response%stress(:, g), new_state(:, g), blocks, of_point)
+                              kind, response%stress(:, g), new_state(:, g), blocks, of_point(g))
          else
             code = mud_update(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
-                              suction(g) + d_suction(g), kind, response%stress(:, g), new_state(:, g), blocks, of_point)
+                              suction(g) + d_suction(g), kind, response%stress(:, g), new_state(:, g), blocks, &
+                              of_point(g))
          end if
-         if (with_tangent .and. code == 0) then
+         if (with_tangent .and. code == 0 .and. .not. self%lanes) then
             response%dsig_deps(:, :, g) = blocks%dsig_deps
             response%dsig_dpc(:, g) = blocks%dsig_dpc
             response%dsw_dev(g) = blocks%dsw_deps(1)   ! the normal components are equal, those of shear are zero
             response%dsw_dpc(g) = blocks%dsw_dpc
          end if
-         call add_up(of_point, report)
+         call add_up(of_point(g), report)
          if (code /= 0) then
             report%code = code
             report%point = g
@@ -261,6 +268,41 @@ contains
          response%s_w(g) = new_state(self%place_s_w, g)
       end do
    end subroutine update
+
+   !> The updates of a batch by the library's own, and what they report; a point that fails leaves the others alone.
+   subroutine update_side_by_side(self, n, stress, state, strain, suction, kind, response, new_state, reports)
+      class(mud_t), intent(in) :: self
+      integer, intent(in) :: n
+      real(wp), intent(in), contiguous, target :: stress(:, :), state(:, :), strain(:, :), suction(:)
+      integer(c_int), intent(in) :: kind
+      type(response_t), intent(inout), target :: response
+      real(wp), intent(inout), contiguous, target :: new_state(:, :)
+      type(mud_report), intent(inout), contiguous, target :: reports(:)
+      type(mud_points) :: points
+      real(wp), target :: stress_(6, n), state_(size(state, 1), n), slopes(6, n)
+      logical :: halting(size(ieee_usual))
+      integer :: g
+
+      points = mud_points(n=n, nstatev=size(state, 1), tangent=kind + MUD_LANES, threads=1, stress0=c_loc(stress), &
+                          statev0=c_loc(state), dstrain=c_loc(strain), suction=c_loc(suction), &
+                          stress1=c_loc(response%stress), statev1=c_loc(new_state), &
+                          dsig_deps=c_loc(response%dsig_deps), dsig_dpc=c_loc(response%dsig_dpc), &
+                          dsw_deps=c_loc(slopes), dsw_dpc=c_loc(response%dsw_dpc), reports=c_loc(reports))
+      if (self%fade < 1.0_wp) then
+         do g = 1, n
+            call faded(self, stress(:, g), state(:, g), stress_(:, g), state_(:, g))
+         end do
+         points%stress0 = c_loc(stress_)
+         points%statev0 = c_loc(state_)
+      end if
+      ! Vectors compute what masks then leave out: builds that stop at exceptions shall not stop there.
+      call ieee_get_halting_mode(ieee_usual, halting)
+      call ieee_set_halting_mode(ieee_usual, .false.)
+      if (mud_update_points(self%prepared, 1, points) < 0) reports%status = MUD_NOT_PREPARED
+      call ieee_set_flag(ieee_usual, .false.)
+      call ieee_set_halting_mode(ieee_usual, halting)
+      response%dsw_dev(:n) = slopes(1, :)   ! the normal components are equal, those of shear are zero
+   end subroutine update_side_by_side
 
    !> Adds the work of a point; what a failure is about is that of the last one.
    pure subroutine add_up(report, sums)

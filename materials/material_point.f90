@@ -12,9 +12,10 @@ module material_point
    private
    public :: material_t, material_slot_t, response_t, batch_report_t, remark_t, state_index, swollen
    public :: lost_pressure, PRESSURE_LOST, CYCLES_UNTRUSTED, MANY_REVERSALS, range_t, untested
-   public :: MOST_POINTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
+   public :: MOST_POINTS, MOST_ELEMENTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
 
-   integer, parameter :: MOST_POINTS = 12   !< Most points of a batch: the quadrature points of an element.
+   integer, parameter :: MOST_ELEMENTS = 8                !< Most elements whose points are one batch.
+   integer, parameter :: MOST_POINTS = 12*MOST_ELEMENTS   !< Most points of a batch: of elements with 12 each.
    integer, parameter :: MOST_GUARDS = 16   !< Counters of a law beside the three that every law has.
    integer, parameter :: NAME_LENGTH = 24
    integer, parameter :: DOUBT_LENGTH = 500
@@ -83,6 +84,8 @@ module material_point
       logical :: overcounts_cycles = .false.     !< It strains far more in many cycles than tests do: CYCLES_UNTRUSTED.
       logical :: cohesionless = .false.     !< It bears no tension, and without stress it has no stiffness.
       logical :: exact_tangent = .false.    !< d sigma'/d strain is the derivative of the update itself.
+      logical :: has_lanes = .false.        !< Points of a batch can go side by side, on this processor, ...
+      logical :: lanes = .false.            !< ... and do: in less time, with numbers that differ by rounding.
       integer :: n_guards = 0
       real(wp) :: tolerance = 0.0_wp        !< Tolerance of the stress integration, relative; 0: the law has none.
       logical :: given_tolerance = .false., given_scheme = .false.   !< Not the defaults: set by hand.

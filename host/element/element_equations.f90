@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Residual and exact tangent of one element: B^T response and B^T slope B over its quadrature points.
+!> Residual and exact tangent of an element: B^T response and B^T slope B over its quadrature points. The material
+!> updates the points of several elements together.
 module element_equations
    use wall_clock, only: clock, add_elapsed
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -16,7 +17,7 @@ module element_equations
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
    implicit none (type, external)
    private
-   public :: element_t, compute_element, element_size, STRAIN_TOO_LARGE
+   public :: element_t, block_t, points_t, update_block, add_element, element_size, STRAIN_TOO_LARGE
 
    integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
    integer, parameter :: LAST_U = 12
@@ -40,16 +41,26 @@ module element_equations
       !> Sums of magnitudes: of volume balances those of strain rates and fluxes, in the rows of p_c those of the water
       !> alone; of momentum those of weight and of the rounding of inertia.
       real(wp) :: stretch(MAX_DOF) = 0.0_wp
-      integer :: source = BY_MATERIAL            !< Source of the response of the points, see carried_slopes.
-      integer :: fallback = NO_FALLBACK          !< Kind of replacement of soft tangents, see tangent_fallback.
-      integer :: replaced = 0                    !< Number of points whose tangent was replaced.
       logical :: with_change = .false.            !< Whether `change` is wanted.
       real(wp) :: change(MAX_DOF) = 0.0_wp       !< Displacements: what the step changes of r, inertia counted whole.
-      type(batch_report_t) :: bad                      !< Report of the material where a point failed.
-      integer :: bad_point = 0                   !< Number of that point, 0: none.
-      integer :: rate_evaluations = 0
-      real(wp) :: seconds = 0.0_wp               !< In the material.
    end type element_t
+
+   !> Elements whose points the material updates together.
+   type :: block_t
+      integer :: first = 1, last = 1        !< Numbers of the elements, of one region.
+      integer :: source = BY_MATERIAL       !< Source of the response, see carried_slopes.
+      integer :: fallback = NO_FALLBACK     !< Kind of replacement of soft tangents, see tangent_fallback.
+      logical :: soft(MOST_POINTS) = .false.   !< Whether the tangent of a point was replaced.
+      type(batch_report_t) :: report        !< Report of the material; its code is not 0 where a point failed.
+      real(wp) :: seconds = 0.0_wp          !< In the material.
+   end type block_t
+
+   !> Points of a block, element by element. No component has a default: it would be paid for with the whole of the
+   !> type.
+   type :: points_t
+      type(kinematics_t) :: k(MOST_POINTS)
+      type(response_t) :: response
+   end type points_t
 contains
    !> Unknowns of an element.
    pure integer function element_size(domain, element)
@@ -63,76 +74,57 @@ contains
       end associate
    end function element_size
 
-   !> Writes r (and k where `with_tangent`), and the point data of `new`. docs/theory/host.md sections 3.3 and 3.4. r:
-   !> [kN], balances of volume [m3/s]. Where a strain of the step is beyond 1 or the material refuses, out%bad_point > 0
-   !> and out%bad says why; the rest of `out` is then of no use.
-   subroutine compute_element(domain, element, scheme, old, new, with_tangent, slopes, out)
+   !> Stress, saturation and void ratio at the points of the elements of a block, and their slopes; the state variables
+   !> of `new`. Where a strain of the step is beyond 1 or the material refuses, block%report says why; the response is
+   !> then of no use.
+   subroutine update_block(domain, scheme, old, new, with_tangent, slopes, block, points)
       type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old
-      type(model_state_t), intent(inout) :: new
-      logical, intent(in) :: with_tangent
-      type(slopes_t), intent(inout) :: slopes   !< Slopes of all points; those of the element are read or written.
-      type(element_t), intent(inout) :: out
-      type(response_t) :: material
-      type(kinematics_t) :: k(MOST_POINTS)
-      real(wp), dimension(MOST_POINTS) :: suction, d_suction
-      real(wp) :: strain(6, MOST_POINTS)
-      integer :: g, n
-
-      out%bad_point = 0
-      out%replaced = 0
-      out%rate_evaluations = 0
-      out%seconds = 0.0_wp
-      call look_at_nodes(domain, element, scheme, old, new, k)
-      do g = 1, domain%rule
-         ! Also where it is not a number.
-         if (all(abs(k(g)%strain) <= 1.0_wp)) cycle
-         out%bad = batch_report_t(code=STRAIN_TOO_LARGE)
-         out%bad_point = g
-         return
-      end do
-      n = domain%rule
-      do g = 1, n
-         strain(1:4, g) = k(g)%strain
-         strain(5:6, g) = 0.0_wp
-         suction(g) = k(g)%c0
-         d_suction(g) = k(g)%c1 - k(g)%c0
-      end do
-      call update_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
-      if (out%bad_point > 0) return
-      call add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
-   end subroutine compute_element
-
-   !> Stress, saturation and void ratio at the points of an element, and their slopes.
-   subroutine update_points(domain, element, old, new, strain, suction, d_suction, with_tangent, slopes, material, out)
-      type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element
       type(model_state_t), intent(in), target :: old
       type(model_state_t), intent(inout), target :: new
-      real(wp), intent(in) :: strain(6, MOST_POINTS), suction(MOST_POINTS), d_suction(MOST_POINTS)
       logical, intent(in) :: with_tangent
-      type(slopes_t), intent(inout) :: slopes
-      type(response_t), intent(inout) :: material
-      type(element_t), intent(inout) :: out
+      type(slopes_t), intent(inout) :: slopes   !< Slopes of all points; those of the block are read or written.
+      type(block_t), intent(inout) :: block
+      type(points_t), intent(inout) :: points
+      real(wp), dimension(MOST_POINTS) :: suction, d_suction
+      real(wp) :: strain(6, MOST_POINTS)
       real(wp), pointer, contiguous :: before(:, :), after(:, :)   !< (n_state, points) of the law
-      integer :: n, first, last, n_state, region
+      integer :: e, first, g, last, n, n_state, region
 
-      n = domain%rule
-      first = (element - 1)*n + 1
-      last = element*n
-      if (out%source == BY_SLOPES) then
-         call follow_slopes(n, first, slopes, old%stress(:, first:last), old%e(first:last), old%s(first:last), strain, &
-                            d_suction, material)
+      block%report = batch_report_t()
+      block%soft = .false.
+      block%seconds = 0.0_wp
+      n = 0
+      do e = block%first, block%last
+         call look_at_nodes(domain, e, scheme, old, new, points%k(n + 1:))
+         n = n + domain%rule
+      end do
+      do g = 1, n
+         associate (k => points%k(g))
+            strain(1:4, g) = k%strain
+            strain(5:6, g) = 0.0_wp
+            suction(g) = k%c0
+            d_suction(g) = k%c1 - k%c0
+            ! Also where it is not a number.
+            if (all(abs(k%strain) <= 1.0_wp)) cycle
+         end associate
+         block%report = batch_report_t(code=STRAIN_TOO_LARGE, point=g)
          return
-      else if (out%source /= BY_MATERIAL) then
-         call kept_response(n, first, slopes, new%stress(:, first:last), new%e(first:last), new%s(first:last), material)
+      end do
+      first = (block%first - 1)*domain%rule + 1
+      last = block%last*domain%rule
+      if (block%source == BY_SLOPES) then
+         call follow_slopes(n, first, slopes, old%stress(:, first:last), old%e(first:last), old%s(first:last), strain, &
+                            d_suction, points%response)
+         return
+      else if (block%source /= BY_MATERIAL) then
+         call kept_response(n, first, slopes, new%stress(:, first:last), new%e(first:last), new%s(first:last), &
+                            points%response)
          return
       end if
-      region = domain%region_of(element)
+      region = domain%region_of(block%first)
       n_state = domain%regions(region)%law%n_state
-      associate (from => domain%before_state(element) + 1, to => domain%before_state(element + 1))
+      associate (from => domain%before_state(block%first) + 1, to => domain%before_state(block%last + 1))
          before(1:n_state, 1:n) => old%state(from:to)
          after(1:n_state, 1:n) => new%state(from:to)
       end associate
@@ -144,24 +136,18 @@ contains
    contains
       subroutine ask(law)
          class(material_t), intent(in) :: law
-         type(batch_report_t) :: report
          real(wp) :: t0
 
          t0 = clock()
          call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
-                         with_tangent .or. allocated(slopes%strain), material, after, report)
-         call add_elapsed(out%seconds, t0)
-         out%rate_evaluations = report%n_rate
-         if (report%code /= 0) then
-            out%bad = report
-            out%bad_point = report%point
-            return
-         end if
-         if (allocated(slopes%strain)) call keep_slopes(n, first, material, slopes)
-         if (with_tangent .and. out%fallback /= NO_FALLBACK) &
-            call replace_soft_tangents(law, out%fallback, n, after, suction(:n) + d_suction(:n), material, out%replaced)
+                         with_tangent .or. allocated(slopes%strain), points%response, after, block%report)
+         call add_elapsed(block%seconds, t0)
+         if (block%report%code /= 0) return
+         if (allocated(slopes%strain)) call keep_slopes(n, first, points%response, slopes)
+         if (with_tangent .and. block%fallback /= NO_FALLBACK) call replace_soft_tangents(law, block%fallback, n, &
+            after, suction(:n) + d_suction(:n), points%response, block%soft)
       end subroutine ask
-   end subroutine update_points
+   end subroutine update_block
 
    !> Evaluates strains, pressures and their rates at the points of an element from the values at its nodes.
    subroutine look_at_nodes(domain, element, scheme, old, new, k)
@@ -220,13 +206,14 @@ contains
       end do
    end subroutine gather
 
-   !> The balances at the points, added up over the element.
-   subroutine add_points(domain, element, scheme, k, material, old, new, with_tangent, out)
+   !> Writes r (and k where `with_tangent`) of an element of a block that was updated, and the point data of `new`.
+   !> docs/theory/host.md sections 3.3 and 3.4. r: [kN], balances of volume [m3/s].
+   subroutine add_element(domain, element, scheme, block, points, old, new, with_tangent, out)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
-      type(kinematics_t), intent(in) :: k(:)
-      type(response_t), intent(in) :: material
+      type(block_t), intent(in) :: block
+      type(points_t), intent(in) :: points
       type(model_state_t), intent(in) :: old
       type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
@@ -236,7 +223,7 @@ contains
       type(sums_t) :: sums
       type(rows_t) :: rows
       real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2, 2)
-      integer :: g, i, p, n, n_p, n_fields
+      integer :: g, i, p, q, n, n_p, n_fields
 
       n = element_size(domain, element)
       n_p = domain%n_carriers(element)
@@ -247,43 +234,44 @@ contains
       if (out%with_change) change = 0.0_wp
       do g = 1, domain%rule
          p = (element - 1)*domain%rule + g
-         skeleton%stress = material%stress(1:4, g)
-         skeleton%e = material%void_ratio(g)
-         skeleton%s = material%s_w(g)
+         q = (element - block%first)*domain%rule + g
+         skeleton%stress = points%response%stress(1:4, q)
+         skeleton%e = points%response%void_ratio(q)
+         skeleton%s = points%response%s_w(q)
          if (with_tangent) then
-            skeleton%tangent = material%dsig_deps(1:4, 1:4, g)
-            skeleton%tangent_suction = material%dsig_dpc(1:4, g)
-            skeleton%ds_dev = material%dsw_dev(g)
-            skeleton%ds_dpc = material%dsw_dpc(g)
+            skeleton%tangent = points%response%dsig_deps(1:4, 1:4, q)
+            skeleton%tangent_suction = points%response%dsig_dpc(1:4, q)
+            skeleton%ds_dev = points%response%dsw_dev(q)
+            skeleton%ds_dpc = points%response%dsw_dpc(q)
          else
             skeleton%ds_dev = 0.0_wp
             skeleton%ds_dpc = 0.0_wp
          end if
-         associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
+         associate (gp => domain%gauss(g, element), k => points%k(q), &
+                    region => domain%regions(domain%region_of(element)))
             if (region%with_w) then
-               call point_response(domain, region, scheme, k(g), old%stress(:, p), skeleton, &
+               call point_response(domain, region, scheme, k, old%stress(:, p), skeleton, &
                                    pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, &
                                    drift)
                new%s(p) = pore%s
                new%s_rate(p) = pore%s_rate
-               rate = sum(abs(scheme%c_v*k(g)%strain(1:3)))*gp%weight
+               rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
                do i = 1, n_p
                   out%stretch([LAST_U + i, LAST_U + n_p + i]) = out%stretch([LAST_U + i, LAST_U + n_p + i]) &
                      + rate*abs(gp%m(i)) + gp%weight*matmul(abs(gp%dm(i, :)), drift)
                end do
             else
-               call solid_response(region, scheme, k(g), old%stress(:, p), skeleton, old%e(p), with_tangent, response, &
+               call solid_response(region, scheme, k, old%stress(:, p), skeleton, old%e(p), with_tangent, response, &
                                    tangent)
             end if
-            new%stress(:, p) = material%stress(:, g)
+            new%stress(:, p) = points%response%stress(:, q)
             new%e(p) = skeleton%e
             rows = weighted_rows(gp)
             call add_response(rows, n_fields, response, sums%r)
             if (out%with_change) call add_forces(rows, &
-               change_of(domain, region, k(g), gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), &
-                         response), &
+               change_of(domain, region, k, gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), response), &
                change)
-            if (scheme%has_inertia) call add_flight_scale(domain, region, k(g), scheme, skeleton, gp, out%stretch)
+            if (scheme%has_inertia) call add_flight_scale(domain, region, k, scheme, skeleton, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, rows, n_fields, tangent, sums%k)
          end associate
       end do
@@ -291,7 +279,7 @@ contains
       call residual_of(sums%r, n_fields, n_p, out%r)
       if (out%with_change) call residual_of(change, DISPLACEMENTS, n_p, out%change)
       if (with_tangent) call matrix_of(sums%k, n_fields, n_p, out%k)
-   end subroutine add_points
+   end subroutine add_element
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
    pure subroutine add_flight_scale(domain, region, k, scheme, skeleton, gp, stretch)

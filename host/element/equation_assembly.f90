@@ -6,9 +6,9 @@ module equation_assembly
    use kinds, only: wp
    use carried_slopes, only: slopes_t, new_slopes, BY_MATERIAL, BY_SLOPES
    use degrees_of_freedom, only: dofs_t
-   use element_equations, only: element_t, compute_element, element_size
+   use element_equations, only: element_t, block_t, points_t, update_block, add_element, element_size
    use tangent_fallback, only: NO_FALLBACK
-   use material_point, only: batch_report_t
+   use material_point, only: batch_report_t, MOST_ELEMENTS
    use porous_domain, only: domain_t, model_state_t, is_present, keep_element_state, COUPLED
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
@@ -85,56 +85,43 @@ contains
       type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
       type(assembly_t), intent(inout) :: assembly
-      integer, allocatable :: bad_point(:), rate_evaluations(:)
       real(wp) :: seconds, t0
+      type(block_t) :: block
+      type(points_t) :: points
       type(element_t) :: out
-      integer :: e, i, m, n, ne, threads, source
+      integer :: bad, e, ne, rates, threads
 
-      m = size(dofs%element, 1)
       ne = size(dofs%element, 2)
-      allocate (bad_point(ne), rate_evaluations(ne), source=0)
       seconds = 0.0_wp
+      rates = 0
+      bad = ne + 1
       t0 = clock()
-      source = merge(BY_MATERIAL, assembly%source, assembly%fallback /= NO_FALLBACK)
+      block%source = merge(BY_MATERIAL, assembly%source, assembly%fallback /= NO_FALLBACK)
+      block%fallback = assembly%fallback
+      out%with_change = assembly%with_change
       assembly%source = BY_MATERIAL
       threads = merge(domain%threads, 1, ne >= WORTH_THREADS)
       if (assembly%fallback /= NO_FALLBACK .and. .not. allocated(assembly%soft)) allocate (assembly%soft(ne))
-      if (assembly%with_change .and. .not. allocated(assembly%d_r)) allocate (assembly%d_r(m, ne))
-      !$omp parallel do num_threads(threads) schedule(dynamic, 8) default(shared) private(e, i, n) firstprivate(out) &
-      !$omp reduction(+:seconds)
-      do e = 1, ne
-         if (.not. is_present(old, e)) then
-            call keep_element_state(domain, e, old, new)
-            call leave_out(e)
-            cycle
-         end if
-         out%with_change = assembly%with_change
-         out%fallback = assembly%fallback
-         out%source = source
-         call compute_element(domain, e, scheme, old, new, with_tangent, assembly%slopes, out)
-         bad_point(e) = out%bad_point
-         rate_evaluations(e) = out%rate_evaluations
-         seconds = seconds + out%seconds
-         n = element_size(domain, e)
-         if (domain%with_c) call balance_of_water(domain, assembly%air, e, n, with_tangent, out)
-         assembly%r(:, e) = out%r(:m)
-         assembly%stretch(:, e) = out%stretch(:m)
-         if (with_tangent .and. assembly%fallback /= NO_FALLBACK) assembly%soft(e) = out%replaced
-         if (assembly%with_change) assembly%d_r(:, e) = out%change(:m)
-         if (with_tangent) then
-            do i = 1, n
-               assembly%k(pattern%before(e) + (i - 1)*n + 1:pattern%before(e) + i*n) = out%k(:n, i)
-            end do
-         end if
+      if (assembly%with_change .and. .not. allocated(assembly%d_r)) allocate (assembly%d_r(size(dofs%element, 1), ne))
+      !$omp parallel do num_threads(threads) schedule(dynamic, 1) default(shared) private(e) &
+      !$omp firstprivate(block, out) reduction(+:seconds, rates) reduction(min:bad)
+      do e = 1, ne, MOST_ELEMENTS
+         call compute_elements(e, min(e + MOST_ELEMENTS - 1, ne), block, out, seconds, rates, bad)
       end do
       !$omp end parallel do
-      assembly%rate_evaluations = sum(rate_evaluations)
-      assembly%bad_element = findloc(bad_point > 0, .true., dim=1)
-      if (assembly%bad_element > 0) then
-         ! Once more, for the answer of the first that failed: which is first does not depend on the threads.
-         call compute_element(domain, assembly%bad_element, scheme, old, new, with_tangent, assembly%slopes, out)
-         assembly%bad_point = out%bad_point
-         assembly%bad = out%bad
+      assembly%rate_evaluations = rates
+      assembly%bad_element = 0
+      if (bad <= ne) then
+         ! Once more one by one, for the answer of the first that failed: which is first does not depend on the threads.
+         do e = bad, min(bad + MOST_ELEMENTS - 1, ne)
+            block%first = e
+            block%last = e
+            call update_block(domain, scheme, old, new, with_tangent, assembly%slopes, block, points)
+            assembly%bad_element = e
+            if (block%report%code /= 0) exit
+         end do
+         assembly%bad_point = block%report%point
+         assembly%bad = block%report
          return
       end if
       if (with_tangent) then
@@ -147,6 +134,63 @@ contains
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    contains
+      !> Elements from .. to, those of one region together. `bad`: the least first element of a block that failed.
+      subroutine compute_elements(from, to, block, out, seconds, rates, bad)
+         integer, intent(in) :: from, to
+         type(block_t), intent(inout) :: block
+         type(element_t), intent(inout) :: out
+         real(wp), intent(inout) :: seconds
+         integer, intent(inout) :: rates, bad
+         type(points_t) :: points
+         integer :: e
+
+         block%last = from - 1
+         do while (block%last < to)
+            block%first = block%last + 1
+            block%last = block%first
+            if (.not. is_present(old, block%first)) then
+               call keep_element_state(domain, block%first, old, new)
+               call leave_out(block%first)
+               cycle
+            end if
+            do e = block%first + 1, to
+               if (.not. is_present(old, e) .or. domain%region_of(e) /= domain%region_of(block%first)) exit
+               block%last = e
+            end do
+            call update_block(domain, scheme, old, new, with_tangent, assembly%slopes, block, points)
+            seconds = seconds + block%seconds
+            rates = rates + block%report%n_rate
+            if (block%report%code /= 0) then
+               bad = min(bad, block%first)
+               cycle
+            end if
+            do e = block%first, block%last
+               call add_element(domain, e, scheme, block, points, old, new, with_tangent, out)
+               call give(e, out)
+               if (with_tangent .and. block%fallback /= NO_FALLBACK) assembly%soft(e) = count( &
+                  block%soft((e - block%first)*domain%rule + 1:(e - block%first + 1)*domain%rule))
+            end do
+         end do
+      end subroutine compute_elements
+
+      !> An element to its places in the sums.
+      subroutine give(e, out)
+         integer, intent(in) :: e
+         type(element_t), intent(inout) :: out
+         integer :: i, m, n
+
+         m = size(assembly%r, 1)
+         n = element_size(domain, e)
+         if (domain%with_c) call balance_of_water(domain, assembly%air, e, n, with_tangent, out)
+         assembly%r(:, e) = out%r(:m)
+         assembly%stretch(:, e) = out%stretch(:m)
+         if (assembly%with_change) assembly%d_r(:, e) = out%change(:m)
+         if (.not. with_tangent) return
+         do i = 1, n
+            assembly%k(pattern%before(e) + (i - 1)*n + 1:pattern%before(e) + i*n) = out%k(:n, i)
+         end do
+      end subroutine give
+
       !> An element that is not part of the ground has no share in the sums.
       subroutine leave_out(element)
          integer, intent(in) :: element

@@ -16,19 +16,19 @@ module tangent_fallback
    real(wp), parameter :: NEXT_TO_NOTHING = 1.0e-3_wp   !< Share of the elastic stiffness [-].
    integer, parameter :: PLANE = 4         !< Components rr, zz, tt, rz.
 contains
-   !> Replaces the tangents of a batch of points that are too soft; counts them. docs/theory/host.md section 5.3.
-   subroutine replace_soft_tangents(law, level, n, state, suction, response, replaced)
+   !> Replaces the tangents of a batch of points that are too soft. docs/theory/host.md section 5.3.
+   subroutine replace_soft_tangents(law, level, n, state, suction, response, soft)
       class(material_t), intent(in) :: law
       integer, intent(in) :: level                 !< OPEN_POINTS or SOFT_POINTS
       integer, intent(in) :: n   !< Number of points.
       real(wp), intent(in) :: state(:, :)          !< (n_state or more, n) after the increment
       real(wp), intent(in) :: suction(:)           !< (n) after it [kPa]
       type(response_t), intent(inout) :: response
-      integer, intent(out) :: replaced   !< Number of tangents that were replaced.
+      logical, intent(out) :: soft(:)              !< (n or more) Points whose tangent was replaced.
       real(wp) :: elastic(6, 6)
       integer :: g
 
-      replaced = 0
+      soft = .false.
       do g = 1, n
          call law%elastic_tangent(response%stress(:, g), state(:, g), suction(g), elastic)
          if (level == OPEN_POINTS) then
@@ -37,7 +37,7 @@ contains
             if (resists(response%dsig_deps(:, :, g) - NEXT_TO_NOTHING*elastic)) cycle
          end if
          response%dsig_deps(:, :, g) = elastic
-         replaced = replaced + 1
+         soft(g) = .true.
       end do
    end subroutine replace_soft_tangents
 

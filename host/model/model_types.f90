@@ -163,6 +163,7 @@ module model_types
    type :: model_t
       type(origin_t) :: origin
       real(wp) :: step_tolerance = 0.0_wp            !< Of the scene, that of its stages and laws [-]; 0: not given.
+      logical :: lanes = .false.                     !< Points go side by side where their law has lanes.
       type(mesh_source_t) :: mesh_source
       type(material_slot_t), allocatable :: materials(:)
       type(curve_t), allocatable :: curves(:)

@@ -154,6 +154,7 @@ contains
       allocate (region%law, source=model%materials(m)%law)
       associate (domain => model%domain)
          region%stress_tolerance = region%law%tolerance
+         region%law%lanes = model%lanes .and. region%law%has_lanes
          ! Without fluids in the scene there is no difference.
          if (.not. domain%with_w) region%drainage = COUPLED
          region%with_w = domain%with_w .and. region%drainage /= DRY

@@ -56,6 +56,8 @@ contains
                        'local tolerance of controlled steps [-], see host/SCENE.md')
          call k%texts('goals', goals, 'answers that mud_study measures, as ''top.u_z''; default: all')
          call k%whole('threads', domain%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
+         call k%flag('lanes', model%lanes, 'no|yes', 'yes', &
+                     'points of &mud eight at a time: less time, and numbers that differ by rounding', ':lanes')
          call k%flag('factors', model%solver%reuse_factors, 'reuse|fresh', 'reuse', &
                      'factors of the matrix: reused while they serve, or new in every iteration')
          call k%word('ordering', model%solver%ordering, 'auto|amd|metis|best', &

@@ -63,6 +63,9 @@ contains
          why = ' on controlled steps; give dt and steps = ''given'''
       else if (index(key%acts, ':grows') > 0 .and. .not. (controlled .or. given(group, 'dt_growth'))) then
          why = ' on steps that are given without dt_growth'
+      else if (index(key%acts, ':lanes') > 0 .and. .not. with_lanes(model)) then
+         why = ': this processor is older than x86-64-v3, the library was built without lanes, or no region is of '// &
+               '&mud with its guards and isotropic mechanism and without hysteresis, preloading and fluidity'
       else if (index(key%acts, ':p_w') > 0 .and. .not. model%domain%with_w) then
          why = ': the scene has no field p_w'
       else if (index(key%acts, ':p_c') > 0 .and. .not. model%domain%with_c) then
@@ -73,6 +76,17 @@ contains
       if (why /= '') call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'// &
                                         trim(group%name)//' has no effect'//why//'.')
    end subroutine judge
+
+   !> Whether the points of a region can go side by side.
+   pure logical function with_lanes(model)
+      type(model_t), intent(in) :: model
+      integer :: i
+
+      with_lanes = .false.
+      do i = 1, size(model%domain%regions)
+         with_lanes = with_lanes .or. model%domain%regions(i)%law%has_lanes
+      end do
+   end function with_lanes
 
    !> Definitions, of a kind that keys refer to, that no key of the scene names.
    subroutine warn_of_unused_definitions(keys, scene)

@@ -6,10 +6,10 @@ module staging
    use acting_places, only: nodes_of_ground
    use carried_slopes, only: slopes_t
    use degrees_of_freedom, only: dofs_t
-   use element_equations, only: element_t, compute_element, element_size
+   use element_equations, only: element_t, block_t, points_t, update_block, add_element, element_size
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise, EXIT_INPUT
-   use generalised_alpha, only: make_scheme, STATIC
+   use generalised_alpha, only: scheme_t, make_scheme, STATIC
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t, gravity_at, share_over
    use porous_domain, only: model_state_t, copy_state
@@ -131,7 +131,10 @@ contains
       type(fault_t), intent(inout) :: fault
       type(model_state_t) :: at_start, same
       type(slopes_t) :: slopes
+      type(block_t) :: block
+      type(points_t) :: points
       type(element_t) :: out
+      type(scheme_t) :: scheme
       integer :: e, i, at
 
       self%held_up = [(0.0_wp, i=1, problem%model%dofs%n)]
@@ -145,15 +148,18 @@ contains
       same = at_start
       ! Laws that change with time are those of the start of the stage.
       if (allocated(problem%next%laws)) same%laws = problem%next%laws
+      scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
       do e = 1, size(stays)
          if (stays(e)) cycle
-         call compute_element(problem%model%domain, e, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, same, .false., &
-                              slopes, out)
-         if (out%bad_point > 0) then
+         block%first = e
+         block%last = e
+         call update_block(problem%model%domain, scheme, at_start, same, .false., slopes, block, points)
+         if (block%report%code /= 0) then
             call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//', which leaves, refuses its '// &
                        'own state at rest.')
             return
          end if
+         call add_element(problem%model%domain, e, scheme, block, points, at_start, same, .false., out)
          do i = 1, element_size(problem%model%domain, e)
             at = problem%model%dofs%element(i, e)
             if (at == 0) cycle

@@ -10,9 +10,9 @@ def bodies(folder):
     found = {}
     for file in folder.rglob("*.f90"):
         text = file.read_text(encoding="utf-8")
-        for match in re.finditer(r"^( *)(?:pure )?(subroutine|program) (\w+).*?^\1end \2 \3$", text,
+        for match in re.finditer(r"^(?=(( *)(?:pure )?(subroutine|program) (\w+).*?^\2end \3 \4$))", text,
                                  re.MULTILINE | re.DOTALL):
-            found.setdefault(match[3], []).append(match[0])
+            found.setdefault(match[4], []).append(match[1])
     return found
 
 

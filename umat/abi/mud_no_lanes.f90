@@ -14,6 +14,6 @@ contains
 
       mud_lane_points = 0
       if (.not. (c_associated(material) .and. c_associated(increments) .and. c_associated(outputs) .and. &
-                 c_associated(reports) .and. n > 0 .and. tangent >= 0)) mud_lane_points = 0   ! all are read
+                 c_associated(reports) .and. n >= 0 .and. tangent >= 0)) mud_lane_points = 0   ! all are read
    end function mud_lane_points
 end module mud_no_lanes

@@ -1,17 +1,18 @@
 ! SPDX-License-Identifier: MIT
 !> A few points of one material side by side (MUD_LANES of mud.h): what the lanes are given, and what they could not do.
 module mud_side_by_side
-   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_loc
+   use, intrinsic :: iso_c_binding, only: c_int, c_loc, c_null_ptr, c_ptr
    use mud_host_increment, only: host_stress, make_total, never_began, suction_change, kind_of, is_total
    use mud_kernel, only: report_t, output_t, start_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
+   use mud_prepared, only: prepared_t, find_prepared
    use mud_registry, only: S_SUCTION
-   use mud_status, only: MUD_OK
+   use mud_status, only: mud_status_t, MUD_OK
    use mud_vector, only: WIDTH
    implicit none (type, external)
    private
-   public :: given_t, update_side_by_side
+   public :: given_t, update_side_by_side, c_prepared_lanes
 
    !> An increment as a host asks for it: stress as its options say, suction at the end.
    type :: given_t
@@ -30,6 +31,19 @@ module mud_side_by_side
       end function mud_lane_points
    end interface
 contains
+   !> 1 where points of a prepared material go side by side on this processor, else 0. MUD_NULL_ARGUMENT,
+   !> MUD_NOT_PREPARED.
+   integer(c_int) function c_prepared_lanes(storage) bind(c, name='mud_prepared_lanes')
+      type(c_ptr), value :: storage
+      type(prepared_t), pointer :: material
+      type(mud_status_t) :: status
+
+      call find_prepared(storage, material, status)
+      c_prepared_lanes = status%code
+      if (status%code == MUD_OK) c_prepared_lanes = mud_lane_points(c_loc(material%par), c_null_ptr, 0, 0, c_null_ptr, &
+                                                                    c_null_ptr)
+   end function c_prepared_lanes
+
    !> host_increment for each of the points, where the lanes can and it does not fail; done tells which. The answer of a
    !> point does not depend on the points beside it.
    subroutine update_side_by_side(par, given, options, outputs, reports, done)

@@ -118,6 +118,7 @@ extern const char *const mud_statev_names[], *const mud_statev_units[];
  * error the storage is no material; storage that is no material of this library: MUD_NOT_PREPARED. */
 int mud_prepared_size(void);
 int mud_prepared_statev(const double *material);            /* numbers of STATEV that its points have */
+int mud_prepared_lanes(const double *material);             /* 1: MUD_LANES acts, of material and processor; else 0 */
 int mud_prepare(const double *props, int nprops, double *material, int size, char *text, int len);
 
 /* Degree of saturation at a suction and a void ratio (above 0), and its slopes against either at constant other; each

@@ -8,7 +8,7 @@ module mud_interface
    public :: mud_report, mud_blocks, mud_points, mud_summary, mud_substep, mud_place, mud_abi_version, mud_version, &
              mud_count, mud_index, mud_text, mud_option, mud_bounds, mud_bounds_for, mud_default_props, &
              mud_convert_props, mud_validate_props, mud_check_props, mud_prepared_size, mud_prepared_statev, &
-             mud_prepare, mud_saturation, mud_init, &
+             mud_prepared_lanes, mud_prepare, mud_saturation, mud_init, &
              mud_update, mud_init_points, mud_update_points, mud_saturation_points, mud_trace_increment, &
              mud_increment_at, mud_refuse, mud_save_increment, mud_status_text, mud_message
    public :: MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_SYMBOL, MUD_UNIT, MUD_ORIGIN, MUD_MEANING, MUD_INITIAL, &
@@ -170,6 +170,12 @@ module mud_interface
          import :: c_int, c_double
          real(c_double), intent(in) :: material(*)
       end function mud_prepared_statev
+
+      !> 1 where MUD_LANES acts for a prepared material on this processor, else 0; MUD_NOT_PREPARED.
+      integer(c_int) function mud_prepared_lanes(material) bind(c, name='mud_prepared_lanes')
+         import :: c_int, c_double
+         real(c_double), intent(in) :: material(*)
+      end function mud_prepared_lanes
 
       integer(c_int) function mud_prepare(props, nprops, material, size_, text, len) bind(c, name='mud_prepare')
          import :: c_int, c_double, c_char
