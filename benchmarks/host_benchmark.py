@@ -56,7 +56,7 @@ def run(part, name, changes=(), threads=1, steps=None):
     path = work / "scene.nml"
     text = replaced(scene, [("duration = 0.03999", f"duration = {steps * 3.0e-5:.6e}"), *changes])
     path.write_text(text, encoding="utf-8")
-    process = subprocess.Popen([args.host, path, "--output", work / "out"], stdout=subprocess.PIPE,
+    process = subprocess.Popen([args.host, path, "--output", work / "out", "--verbose"], stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, env={**os.environ, "OMP_NUM_THREADS": str(threads)})
     said = process.stdout.read()
     _, status, usage = os.wait4(process.pid, 0)
