@@ -82,10 +82,12 @@ contains
       plan%suction_start = point%suction
       plan%stress_start = controlled_stress(soil, stage, point)
       plan%water_start = water(soil, point)
+      if (stage%moves_suction) plan%given_change(SUCTION) = stage%suction_end - point%suction
+      if (stage%by_change) plan%given_change(SUCTION) = stage%suction_change
       select case (stage%lead)
       case (BY_SUCTION)
          plan%lead_start = point%suction
-         plan%lead_change = target - point%suction
+         plan%lead_change = plan%given_change(SUCTION)
       case (BY_D_EPS, BY_D_SIGMA)
          plan%lead_change = maxval(abs(stage%changes))
       case (BY_CHANGES)
@@ -99,8 +101,6 @@ contains
       plan%interval = stage%interval
 
       plan%given(SUCTION) = .not. stage%keeps_water
-      if (stage%moves_suction) plan%given_change(SUCTION) = stage%suction_end - point%suction
-      if (stage%by_change) plan%given_change(SUCTION) = stage%suction_change
       ! Wetting under a constant load: what leads stays, or moves by less than a default increment, and suction decides.
       if (abs(plan%given_change(SUCTION)) > 0.0_wp .and. (abs(plan%lead_change) <= STAYS*stage%increment .or. &
           plan%increments <= stage%parts .and. .not. stage%given_increment)) then

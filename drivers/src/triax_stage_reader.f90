@@ -290,6 +290,7 @@ contains
          end associate
       end do
       if (stage%control == LINEAR) stage%lead = BY_CHANGES
+      if (any(leads == BY_SUCTION) .and. k%given('d_suction')) stage%lead = BY_SUCTION
       if (stage%lead == 0) then
          call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)//'a stage of control '// &
                     name_of(stage%control)//' needs '//choice//': '// &
@@ -299,7 +300,6 @@ contains
 
       call set_constraints(stage, stage%lead)
       stage%target = 1.0_wp
-      if (stage%lead == BY_SUCTION) stage%target = stage%suction_end
       if (stage%lead < BY_SUCTION) stage%target = ends(stage%lead)
       if (stage%lead == BY_CHANGES) then
          stage%changes = ends(BY_CHANGES:)
@@ -331,10 +331,6 @@ contains
       stage%by_change = k%given('d_suction')
       if (stage%moves_suction .and. stage%by_change) then
          call refuse(k%group, 'd_suction', 'cannot be combined with suction_end; remove one of them.', fault)
-         return
-      else if (stage%by_change .and. stage%lead == BY_SUCTION) then
-         call refuse(k%group, 'd_suction', 'has no effect with control '//name_of(stage%control)// &
-                     ', which takes suction_end; remove it.', fault)
          return
       end if
       stage%moves_suction = stage%moves_suction .or. stage%by_change

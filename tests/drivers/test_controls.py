@@ -139,6 +139,15 @@ def test_net_radial_stress_is_held():
     check("net radial stress is held beside it", spread(rows, lambda r: net(r, "sigma_r")) <= HELD*100, "")
 
 
+def test_a_change_of_suction_leads_as_its_end_does():
+    # From 20 kPa by -5 is to 15; the second stage knows where the first has ended.
+    ends, changes = (run(*(f"control = 'constant_net_stress', {key}, increment = 0.5" for key in keys),
+                         initial="p_eff = 100.0, void_ratio = 0.833, suction = 20.0")[0]
+                     for keys in (("suction_end = 15", "suction_end = 32"), ("d_suction = -5", "d_suction = 17")))
+    check("the suction is there", changes[-1]["suction"] == 32, changes[-1])
+    check("by the same rows", ends == changes, (len(ends), len(changes)))
+
+
 def test_shut_valves_keep_water_and_air():
     # Boyle's law with what water dissolves (Henry): (p_at + p_a) (e - (1 - h) S_w e) and S_w e stay; the total radial
     # stress, sigma' - S_w p_c + p_a, is held; u is the rise of the water pressure.
