@@ -9,7 +9,7 @@ module csv
    implicit none (type, external)
    private
    public :: csv_t, open_csv, new_csv, check_csv, resume_csv, write_row, write_line, hand_over, flush_csv, close_csv
-   public :: is_open, columns_of, cells_of, quoted, NUMBERS
+   public :: is_open, columns_of, quoted, NUMBERS
 
    character(*), parameter :: NUMBERS = '(*(es24.16e3,:,","))'   !< Format of a row of numbers.
    integer, parameter :: CELL = 25                               !< Characters of a number in such a row.
@@ -64,34 +64,6 @@ contains
          if (head(i:i) == ',' .and. .not. inside) columns_of = columns_of + 1
       end do
    end function columns_of
-
-   !> The cells of a line, without quotes.
-   pure subroutine cells_of(line, cells)
-      character(*), intent(in) :: line
-      character(*), allocatable, intent(out) :: cells(:)   !< (columns_of)
-      logical :: inside
-      integer :: i, k, n
-
-      allocate (cells(columns_of(line)))
-      cells = ''
-      inside = .false.
-      k = 1
-      n = 0
-      do i = 1, len(line)
-         if (line(i:i) == '"') then
-            inside = .not. inside
-            ! Of two in a row the second one opens again: a quote of the text.
-            if (.not. inside .or. i == 1) cycle
-            if (line(i - 1:i - 1) /= '"') cycle
-         else if (line(i:i) == ',' .and. .not. inside) then
-            k = k + 1
-            n = 0
-            cycle
-         end if
-         n = n + 1
-         if (n <= len(cells)) cells(k)(n:n) = line(i:i)
-      end do
-   end subroutine cells_of
 
    !> A text as a cell: in quotes where it has a comma or quotes, which are doubled.
    pure function quoted(text) result(cell)

@@ -6,9 +6,9 @@ module files
    use, intrinsic :: iso_fortran_env, only: output_unit
    implicit none (type, external)
    private
-   public :: write_whole, name_part, remove_part, PART, read_whole, bytes_of, make_folder, folder_of, to_terminal, &
-             terminal_width, limits_are_errors
-   public :: fopen, open_output, fwrite, fflush, fileno, fclose, fsync, truncate
+   public :: write_whole, name_part, remove_part, PART, read_whole, bytes_of, make_folder, folder_of, beside, &
+             to_terminal, terminal_width, limits_are_errors
+   public :: fopen, open_output, fwrite, fflush, fileno, fclose, fsync, truncate, signal
 
    character(*), parameter :: PART = '.part'   !< Ends the name of a file that is being written.
 
@@ -84,6 +84,7 @@ module files
          integer(c_int), value :: mode
       end function mkdir
 
+      !> Sets what a signal of the system does, and returns what it did before.
       type(c_funptr) function signal(number, action) bind(c)
          import :: c_int, c_funptr
          integer(c_int), value :: number
@@ -214,6 +215,15 @@ contains
       slash = index(path, '/', back=.true.)
       if (slash > 0) folder = path(:max(1, slash - 1))
    end function folder_of
+
+   !> Path of a file that another file names: a relative one begins at the folder of that.
+   pure function beside(file, named) result(path)
+      character(*), intent(in) :: file, named
+      character(:), allocatable :: path
+
+      path = named
+      if (index(named, '/') /= 1) path = file(:index(file, '/', back=.true.))//named
+   end function beside
 
    !> Makes a folder and those above it; whether it is there then shows with the first file. Nothing is reported.
    subroutine make_folder(path)

@@ -3,6 +3,7 @@
 !> A second one ends it at once.
 module interrupts
    use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_funloc, c_null_funptr
+   use files, only: signal
    implicit none (type, external)
    private
    public :: catch_interrupts, interrupted, EXIT_INTERRUPTED
@@ -10,14 +11,6 @@ module interrupts
    integer, parameter :: EXIT_INTERRUPTED = 130   !< Exit code of a run that SIGINT ends, as a shell tells it: 128 + 2.
    integer(c_int), parameter :: SIGINT = 2, SIGTERM = 15   !< POSIX
    logical, volatile :: seen = .false.
-
-   interface
-      type(c_funptr) function signal(number, action) bind(c)
-         import :: c_int, c_funptr
-         integer(c_int), value :: number
-         type(c_funptr), value :: action
-      end function signal
-   end interface
 contains
    !> Catches interrupts from here on, for the whole process.
    subroutine catch_interrupts()

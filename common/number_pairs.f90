@@ -3,6 +3,7 @@
 module number_pairs
    use kinds, only: wp
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use files, only: beside
    use texts, only: whole, read_number, mark_length
    implicit none (type, external)
    private
@@ -26,11 +27,7 @@ contains
       logical :: good(2)
       integer :: unit, status, n, last, count
 
-      if (index(named, '/') == 1) then
-         path = named
-      else
-         path = from_file(:index(from_file, '/', back=.true.))//named
-      end if
+      path = beside(from_file, named)
       allocate (first(0), second(0), pairs(2, 64))
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
       if (status /= 0) then

@@ -5,6 +5,7 @@ module parameter_groups
    use kinds, only: wp
    use mud_interface, only: mud_default_props, mud_validate_props
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use files, only: beside
    use key_schema, only: key_t, check_group, get_number, NONE, UNBOUNDED
    use texts, only: lower_case, short, whole, read_number, word_place, from_c
    use namelists, only: group_t, read_groups, groups_of_text, find_entry
@@ -55,8 +56,7 @@ contains
       end if
       place = find_entry(group, 'file')
       if (place > 0) then
-         path = trim(group%entries(place)%values(1))
-         if (path(1:1) /= '/') path = folder_of(group%file)//path
+         path = beside(trim(group%file), trim(group%entries(place)%values(1)))
          call read_groups(path, groups, fault)
          if (fault%code /= 0) then
             if (size(groups) == 0 .and. group%file /= '') &
@@ -101,14 +101,6 @@ contains
       call groups_of_text('&material '//entry//' /', '', groups, fault)
       if (fault%code == 0) group = groups(1)
    end subroutine group_of_file
-
-   !> Folder of a file, with its closing slash; empty if the file is in the present one.
-   pure function folder_of(file) result(folder)
-      character(*), intent(in) :: file
-      character(:), allocatable :: folder
-
-      folder = file(:index(file, '/', back=.true.))
-   end function folder_of
 
    subroutine apply_group(group, props, title, doubt, tested, fault)
       type(group_t), intent(in) :: group

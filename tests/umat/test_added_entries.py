@@ -20,9 +20,9 @@ CORE = "umat/core/"
 STATE = [
     (CORE + "base/mud_registry.f90", "S_GAP, S_MARGIN, S_STACK", "S_GAP, S_MARGIN, S_TRIAL, S_STACK"),
     (CORE + "base/mud_registry.f90", "S_STACK = S_MARGIN + 1", "S_TRIAL = S_MARGIN + 1, S_STACK = S_TRIAL + 1"),
-    (CORE + "base/mud_registry.f90", "      variable_t(S_STACK + 0, 6, 'memory_1'",
+    (CORE + "base/mud_registry.f90", "      variable_t(S_STACK, 6, 'memory_#'",
      "      variable_t(S_TRIAL, 1, 'trial', 'T', '1', .false., 'ours', 'steps of the trial', '0', 'adds up'), &\n"
-     "      variable_t(S_STACK + 0, 6, 'memory_1'"),
+     "      variable_t(S_STACK, 6, 'memory_#'"),
     (CORE + "laws/mud_state.f90", "use mud_registry, only: NSTATV,", "use mud_registry, only: S_TRIAL, NSTATV,"),
     (CORE + "laws/mud_state.f90", "      real(wp) :: p_c          !<",
      "      real(wp) :: trial\n      real(wp) :: p_c          !<"),

@@ -242,7 +242,7 @@ contains
       e = number_at(arrays%void_ratio, j)
       preset = number_at(arrays%saturation, j)
       begun = arrays%stress0(:, j)
-      if (total) begun = effective_stress(begun, 0.0_wp, first_saturation(par, suction, e, preset), suction)
+      if (total) begun = effective_stress(begun, first_saturation(par, suction, e, preset), suction)
       stress = begun
       n = min(size(arrays%statev1, 1), NSTATV)
       call kernel_begin(par, begun, suction, e, statev(:n), report, preset)
@@ -251,7 +251,7 @@ contains
       raised = any(abs(begun - stress) > 0.0_wp)
       number = j - 1
       call remark_on_begun(par, stress, statev(:n), place_t('mud_init_points', point=c_loc(number)))
-      if (total) begun = total_stress(begun, 0.0_wp, statev(S_SATURATION), suction)
+      if (total) begun = total_stress(begun, statev(S_SATURATION), suction)
       arrays%stress1(:, j) = begun
       arrays%statev1(1:n, j) = statev(1:n)
       if (associated(arrays%s_w)) arrays%s_w(j) = statev(S_SATURATION)

@@ -10,7 +10,7 @@ module mud_c_api
    use mud_params, only: params_t, read_params, completed, is_length, check_bounds, default_props
    use mud_registry, only: OPTIONS, NPROPS, NSTATV, PROPERTIES, VARIABLES, property_index, property_meaning, &
       statev_index, statev_name, &
-      statev_variable
+      statev_variable, numbered
    use mud_retention, only: check_retention
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NPROPS, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_INPUT, &
       ON_ARGUMENT
@@ -96,8 +96,9 @@ contains
          end associate
       else
          associate (entry => VARIABLES(statev_variable(index + 1)))
-            fields_ = [character(LONGEST) :: statev_name(index + 1), entry%symbol, entry%unit, entry%origin, &
-                       entry%meaning, entry%initial, merge('DROT', 'no  ', entry%rotates), entry%evolution]
+            fields_ = [character(LONGEST) :: statev_name(index + 1), numbered(entry%symbol, index + 1), entry%unit, &
+                       entry%origin, numbered(entry%meaning, index + 1), entry%initial, &
+                       merge('DROT', 'no  ', entry%rotates), entry%evolution]
          end associate
       end if
       call put(fields_(field), text, len)

@@ -78,7 +78,7 @@ contains
 
       start = stress
       if (is_total(options) .and. is_finite(statev(S_SUCTION)) .and. is_finite(statev(S_SATURATION))) &
-         start = effective_stress(stress, 0.0_wp, statev(S_SATURATION), statev(S_SUCTION))
+         start = effective_stress(stress, statev(S_SATURATION), statev(S_SUCTION))
    end function host_stress
 
    !> Layout 0: no start has filled it. One that is not finite is refused elsewhere.
@@ -103,7 +103,7 @@ contains
       type(output_t), intent(inout) :: output
 
       associate (s_w => output%statev(S_SATURATION), suction => output%statev(S_SUCTION))
-         output%stress = total_stress(output%stress, 0.0_wp, s_w, suction)
+         output%stress = total_stress(output%stress, s_w, suction)
          if (output%has_tangent) call total_blocks(s_w, suction, output%dsw_deps, output%dsw_dpc, output%dsig_deps, &
                                                    output%dsig_dpc)
       end associate

@@ -171,12 +171,14 @@ contains
    pure subroutine rotate_statev(drot, statev)
       real(wp), intent(in) :: drot(3, 3)
       real(wp), intent(inout) :: statev(:)
-      integer :: i, first
+      integer :: i, j, first
 
       do i = 1, size(VARIABLES)
          if (.not. VARIABLES(i)%rotates) cycle
-         first = VARIABLES(i)%first
-         statev(first:first + 5) = rotate(statev(first:first + 5), drot)
+         do j = 0, VARIABLES(i)%copies - 1
+            first = VARIABLES(i)%first + j*VARIABLES(i)%stride
+            statev(first:first + 5) = rotate(statev(first:first + 5), drot)
+         end do
       end do
    end subroutine rotate_statev
 

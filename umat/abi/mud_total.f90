@@ -9,22 +9,21 @@ module mud_total
    public :: effective_stress, total_stress, total_blocks
 
 contains
-   !> Effective stress of a total one [kPa]. Tension positive, S_w [-], pressures in the unit of the stress.
-   !> docs/theory/material.md section 1.1.
-   pure function effective_stress(total, air_pressure, s_w, suction) result(effective)
-      real(wp), intent(in) :: total(6), air_pressure, s_w, suction   !< Air pressure positive in compression.
+   !> Effective stress of a total one less air pressure [kPa]. Tension positive, S_w [-], suction in the unit of the
+   !> stress. docs/theory/material.md section 1.1.
+   pure function effective_stress(total, s_w, suction) result(effective)
+      real(wp), intent(in) :: total(6), s_w, suction
       real(wp) :: effective(6)
 
-      effective = total + (air_pressure - s_w*suction)*IDENTITY
+      effective = total - s_w*suction*IDENTITY
    end function effective_stress
 
-   !> Total stress of an effective one [kPa]. Tension positive, S_w [-], pressures in the unit of the stress.
-   !> docs/theory/material.md section 1.1.
-   pure function total_stress(effective, air_pressure, s_w, suction) result(total)
-      real(wp), intent(in) :: effective(6), air_pressure, s_w, suction
+   !> Total stress less air pressure of an effective one [kPa], likewise. docs/theory/material.md section 1.1.
+   pure function total_stress(effective, s_w, suction) result(total)
+      real(wp), intent(in) :: effective(6), s_w, suction
       real(wp) :: total(6)
 
-      total = effective - (air_pressure - s_w*suction)*IDENTITY
+      total = effective + s_w*suction*IDENTITY
    end function total_stress
 
    !> Slopes of effective stress become those of total stress at constant air pressure:

@@ -9,7 +9,8 @@ module mud_registry
    public :: UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, NPROPS_BASE, NSTATV_BASE, &
              NPROPS_WITHOUT_PRELOADING, NSTATV_WITHOUT_PRELOADING, NPROPS_WITHOUT_FLUIDITY, NSTATV_WITHOUT_FLUIDITY
    public :: KIND_REAL, KIND_SWITCH, KIND_OPTION, KIND_COUNT
-   public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, COMPONENTS
+   public :: option_t, OPTIONS, property_meaning, property_index, statev_index, statev_name, statev_variable, &
+             numbered, COMPONENTS
    public :: ISOTROPIC_NONE, ISOTROPIC_FORGETS, ISOTROPIC_REMEMBERS
    public :: RULE_CLASSIC, RULE_THRESHOLD, RULE_REPOSITIONING, RULE_RETURN_POINT, SCHEME_AUTOMATIC, &
              SCHEME_OF_PAPER
@@ -57,20 +58,6 @@ module mud_registry
       integer :: property, value
       character(24) :: word
    end type option_t
-
-   !> One state variable: a scalar or a tensor of six components.
-   type :: variable_t
-      integer :: first         !< First place in STATEV, from 1.
-      integer :: size          !< 1 or 6.
-      character(16) :: name
-      character(12) :: symbol
-      character(8) :: unit
-      logical :: rotates       !< DROT acts on it.
-      character(12) :: origin
-      character(112) :: meaning
-      character(20) :: initial !< Word for its value at the start.
-      character(64) :: evolution !< Sentence on how and when it changes.
-   end type variable_t
 
    integer, parameter :: P_K_0 = 1
    integer, parameter :: P_G_0 = 2
@@ -158,6 +145,22 @@ module mud_registry
    integer, parameter :: NSTATV_WITHOUT_FLUIDITY = S_CHI_STACK - 1 + MAX_INTERRUPTED
    integer, parameter :: S_FLUIDITY = NSTATV_WITHOUT_FLUIDITY + 1
    integer, parameter :: NSTATV = S_FLUIDITY
+
+   !> One state variable: a scalar or a tensor of six components; or several of a kind, whose number texts have for #.
+   type :: variable_t
+      integer :: first         !< First place in STATEV, from 1.
+      integer :: size          !< 1 or 6.
+      character(16) :: name
+      character(12) :: symbol
+      character(8) :: unit
+      logical :: rotates       !< DROT acts on it.
+      character(12) :: origin
+      character(112) :: meaning
+      character(20) :: initial !< Word for its value at the start.
+      character(64) :: evolution !< Sentence on how and when it changes.
+      integer :: copies = 1     !< So many of a kind ...
+      integer :: stride = NSTATV !< ... so far apart in STATEV.
+   end type variable_t
 
    type(property_t), parameter :: PROPERTIES(NPROPS) = [ &
       property_t(P_K_0, 'K_0', 'K_0', '1', KIND_REAL, 0.001_wp, 1.0e5_wp, 150.0_wp, 'paper', &
@@ -356,94 +359,35 @@ module mud_registry
       variable_t(S_MARGIN, 1, 'isotropic_margin', 'u', '1', .false., 'ours', &
          'how far compression is from where it was before, as ln p''; 0: there; with isotropic = 2', '0', &
          'falls where compression ceases, rises with it to 0'), &
-      variable_t(S_STACK + 0, 6, 'memory_1', 'r_in,1', '1', .true., 'ours', &
-         'memory of the interrupted process 1; the first is the oldest (rule return_point)', '0', &
-         'set where the process is interrupted'), &
-      variable_t(S_STACK + 6, 6, 'direction_1', 'n_1', '1', .true., 'ours', &
-         'direction of the interrupted process 1', '0', 'set where the process is interrupted'), &
-      variable_t(S_STACK + 12, 1, 'target_1', 'T:n_1', '1', .false., 'ours', &
-         'r:direction_1 at which the process 1 goes on', '0', 'set where the process is interrupted'), &
-      variable_t(S_STACK + 13, 6, 'memory_2', 'r_in,2', '1', .true., 'ours', &
-         'memory of the interrupted process 2; the first is the oldest (rule return_point)', '0', &
-         'set where the process is interrupted'), &
-      variable_t(S_STACK + 19, 6, 'direction_2', 'n_2', '1', .true., 'ours', &
-         'direction of the interrupted process 2', '0', 'set where the process is interrupted'), &
-      variable_t(S_STACK + 25, 1, 'target_2', 'T:n_2', '1', .false., 'ours', &
-         'r:direction_2 at which the process 2 goes on', '0', 'set where the process is interrupted'), &
-      variable_t(S_STACK + 26, 6, 'memory_3', 'r_in,3', '1', .true., 'ours', &
-         'memory of the interrupted process 3; the first is the oldest (rule return_point)', '0', &
-         'set where the process is interrupted'), &
-      variable_t(S_STACK + 32, 6, 'direction_3', 'n_3', '1', .true., 'ours', &
-         'direction of the interrupted process 3', '0', 'set where the process is interrupted'), &
-      variable_t(S_STACK + 38, 1, 'target_3', 'T:n_3', '1', .false., 'ours', &
-         'r:direction_3 at which the process 3 goes on', '0', 'set where the process is interrupted'), &
-      variable_t(S_STACK + 39, 6, 'memory_4', 'r_in,4', '1', .true., 'ours', &
-         'memory of the interrupted process 4; the first is the oldest (rule return_point)', '0', &
-         'set where the process is interrupted'), &
-      variable_t(S_STACK + 45, 6, 'direction_4', 'n_4', '1', .true., 'ours', &
-         'direction of the interrupted process 4', '0', 'set where the process is interrupted'), &
-      variable_t(S_STACK + 51, 1, 'target_4', 'T:n_4', '1', .false., 'ours', &
-         'r:direction_4 at which the process 4 goes on', '0', 'set where the process is interrupted'), &
+      variable_t(S_STACK, 6, 'memory_#', 'r_in,#', '1', .true., 'ours', &
+         'memory of the interrupted process #; the first is the oldest (rule return_point)', '0', &
+         'set where the process is interrupted', MAX_INTERRUPTED, ENTRY_SIZE), &
+      variable_t(S_STACK + 6, 6, 'direction_#', 'n_#', '1', .true., 'ours', &
+         'direction of the interrupted process #', '0', 'set where the process is interrupted', MAX_INTERRUPTED, &
+         ENTRY_SIZE), &
+      variable_t(S_STACK + 12, 1, 'target_#', 'T:n_#', '1', .false., 'ours', &
+         'r:direction_# at which the process # goes on', '0', 'set where the process is interrupted', MAX_INTERRUPTED, &
+         ENTRY_SIZE), &
       variable_t(S_TURNS, 1, 'turns', '-', '1', .false., 'ours', &
          '1 + number of turning points of suction, positive in drying, negative in wetting; with hysteresis', '1', &
          'grows where suction turns, falls where it passes a turning point'), &
       variable_t(S_N_CLEARED, 1, 'n_turns_cleared', '-', '1', .false., 'ours', &
          'total: increments whose S_w was off its branch, so that the turning points were forgotten; with hysteresis', &
          '0', 'adds up'), &
-      variable_t(S_TURN + 0, 1, 'turn_x_1', 'ln(x_1/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 1; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 1, 1, 'turn_s_w_1', 'S_1', '1', .false., 'ours', &
-         'degree of saturation of turning point 1; with hysteresis', '0', 'set where suction turns'), &
-      variable_t(S_TURN + 2, 1, 'turn_x_2', 'ln(x_2/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 2; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 3, 1, 'turn_s_w_2', 'S_2', '1', .false., 'ours', &
-         'degree of saturation of turning point 2; with hysteresis', '0', 'set where suction turns'), &
-      variable_t(S_TURN + 4, 1, 'turn_x_3', 'ln(x_3/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 3; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 5, 1, 'turn_s_w_3', 'S_3', '1', .false., 'ours', &
-         'degree of saturation of turning point 3; with hysteresis', '0', 'set where suction turns'), &
-      variable_t(S_TURN + 6, 1, 'turn_x_4', 'ln(x_4/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 4; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 7, 1, 'turn_s_w_4', 'S_4', '1', .false., 'ours', &
-         'degree of saturation of turning point 4; with hysteresis', '0', 'set where suction turns'), &
-      variable_t(S_TURN + 8, 1, 'turn_x_5', 'ln(x_5/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 5; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 9, 1, 'turn_s_w_5', 'S_5', '1', .false., 'ours', &
-         'degree of saturation of turning point 5; with hysteresis', '0', 'set where suction turns'), &
-      variable_t(S_TURN + 10, 1, 'turn_x_6', 'ln(x_6/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 6; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 11, 1, 'turn_s_w_6', 'S_6', '1', .false., 'ours', &
-         'degree of saturation of turning point 6; with hysteresis', '0', 'set where suction turns'), &
-      variable_t(S_TURN + 12, 1, 'turn_x_7', 'ln(x_7/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 7; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 13, 1, 'turn_s_w_7', 'S_7', '1', .false., 'ours', &
-         'degree of saturation of turning point 7; with hysteresis', '0', 'set where suction turns'), &
-      variable_t(S_TURN + 14, 1, 'turn_x_8', 'ln(x_8/P_a)', '1', .false., 'ours', &
-         'modified suction of turning point 8; the first is the oldest; with hysteresis', '0', &
-         'set where suction turns'), &
-      variable_t(S_TURN + 15, 1, 'turn_s_w_8', 'S_8', '1', .false., 'ours', &
-         'degree of saturation of turning point 8; with hysteresis', '0', 'set where suction turns'), &
+      variable_t(S_TURN, 1, 'turn_x_#', 'ln(x_#/P_a)', '1', .false., 'ours', &
+         'modified suction of turning point #; the first is the oldest; with hysteresis', '0', &
+         'set where suction turns', MAX_TURNS, 2), &
+      variable_t(S_TURN + 1, 1, 'turn_s_w_#', 'S_#', '1', .false., 'ours', &
+         'degree of saturation of turning point #; with hysteresis', '0', 'set where suction turns', MAX_TURNS, 2), &
       variable_t(S_CHI, 1, 'contraction', 'chi', '1', .false., 'ours', &
          'plastic contraction of all processes that preloads; with c_chi', '0', &
          'grows in contraction, falls in dilation'), &
       variable_t(S_CHI_OWN, 1, 'contraction_own', 'chi_o', '1', .false., 'ours', &
          'the share of the present process in it; with c_chi', '0', &
          'likewise; 0 at a reset, restored at a return'), &
-      variable_t(S_CHI_STACK + 0, 1, 'contraction_1', 'chi_1', '1', .false., 'ours', &
-         'the share of the interrupted process 1 in it; with c_chi', '0', 'set where the process is interrupted'), &
-      variable_t(S_CHI_STACK + 1, 1, 'contraction_2', 'chi_2', '1', .false., 'ours', &
-         'the share of the interrupted process 2 in it; with c_chi', '0', 'set where the process is interrupted'), &
-      variable_t(S_CHI_STACK + 2, 1, 'contraction_3', 'chi_3', '1', .false., 'ours', &
-         'the share of the interrupted process 3 in it; with c_chi', '0', 'set where the process is interrupted'), &
-      variable_t(S_CHI_STACK + 3, 1, 'contraction_4', 'chi_4', '1', .false., 'ours', &
-         'the share of the interrupted process 4 in it; with c_chi', '0', 'set where the process is interrupted'), &
+      variable_t(S_CHI_STACK, 1, 'contraction_#', 'chi_#', '1', .false., 'ours', &
+         'the share of the interrupted process # in it; with c_chi', '0', 'set where the process is interrupted', &
+         MAX_INTERRUPTED, 1), &
       variable_t(S_FLUIDITY, 1, 'fluidity', 'ell', '1', .false., 'ours', &
          'fluidity that liquefaction has left; with c_ell', '0', &
          'grows by shear below p_ell, falls with the volume')]
@@ -516,23 +460,39 @@ contains
    pure function statev_name(index) result(name)
       integer, intent(in) :: index   !< From 1 to NSTATV, not checked.
       character(20) :: name
-      integer :: variable
+      integer :: i
 
-      variable = statev_variable(index)
-      name = VARIABLES(variable)%name
-      if (VARIABLES(variable)%size == 6) then
-         name = trim(name)//'_'//COMPONENTS(index - VARIABLES(variable)%first + 1)
-      end if
+      i = statev_variable(index)
+      name = numbered(VARIABLES(i)%name, index)
+      if (VARIABLES(i)%size == 6) name = trim(name)//'_'// &
+         COMPONENTS(mod(index - VARIABLES(i)%first, VARIABLES(i)%stride) + 1)
    end function statev_name
+
+   !> A text about one place in STATEV: # is its number among those of a kind.
+   pure function numbered(text, index) result(told)
+      character(*), intent(in) :: text
+      integer, intent(in) :: index   !< From 1 to NSTATV, not checked.
+      character(len(text)) :: told
+      integer :: i, k
+
+      told = text
+      i = statev_variable(index)
+      if (VARIABLES(i)%copies == 1) return
+      do k = 1, len(text)   ! copies are less than ten
+         if (text(k:k) == '#') told(k:k) = achar(iachar('1') + (index - VARIABLES(i)%first)/VARIABLES(i)%stride)
+      end do
+   end function numbered
 
    !> Entry of VARIABLES that a place in STATEV belongs to.
    pure integer function statev_variable(index) result(variable)
       integer, intent(in) :: index   !< From 1 to NSTATV, not checked.
 
-      do variable = 1, NVARIABLES
-         if (index < VARIABLES(variable)%first + VARIABLES(variable)%size) return
+      do variable = 1, NVARIABLES - 1
+         associate (at => index - VARIABLES(variable)%first, stride => VARIABLES(variable)%stride)
+            if (at >= 0 .and. mod(at, stride) < VARIABLES(variable)%size .and. at/stride < VARIABLES(variable)%copies) &
+               return
+         end associate
       end do
-      variable = NVARIABLES
    end function statev_variable
 
    pure function lower_case(text) result(lower)
