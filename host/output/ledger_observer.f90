@@ -13,7 +13,7 @@ module ledger_observer
    use generalised_alpha, only: has_inertia
    use kinds, only: wp
    use linear_system, only: T_CONTACT
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, FITS, BEGINS, STEP, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
    use texts, only: short
@@ -42,12 +42,7 @@ module ledger_observer
       real(wp), allocatable :: indicators(:)   !< Indicators of the last step.
    contains
       procedure :: exchange
-      procedure :: fits
-      procedure :: begins
-      procedure :: step
-      procedure :: taken_over
-      procedure :: stage_ends
-      procedure :: ends
+      procedure :: hear
    end type ledger_observer_t
 contains
    !> Exchanges ledger, stress of the damping and the length of the table.
@@ -61,30 +56,36 @@ contains
       call exchange_table('ledger', self%table, archive)
    end subroutine exchange
 
-   !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: ledger.csv is missing or too short.
-   subroutine fits(self, run, fault)
+   !> Books every step and writes its row in ledger.csv. Faults: EXIT_RESTART, the table is missing or too short;
+   !> EXIT_OUTPUT, it cannot be written; those of book.
+   subroutine hear(self, event, run, fault)
       class(ledger_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
-   end subroutine fits
-
-   !> Opens ledger.csv. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine begins(self, run, fault)
-      class(ledger_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (run%steps == 0 .and. any(run%model%domain%regions%stiffness_damping > 0.0_wp)) &
-         allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
-      if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS//indicator_columns(run%model), &
-                                                  run%steps > 0, self%table, fault)
-   end subroutine begins
+      select case (event)
+      case (FITS)
+         if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
+      case (BEGINS)
+         if (run%steps == 0 .and. any(run%model%domain%regions%stiffness_damping > 0.0_wp)) &
+            allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
+         if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS// &
+                                                     indicator_columns(run%model), run%steps > 0, self%table, fault)
+      case (STEP)
+         call book(self, run, fault)
+      case (TAKEN_OVER)
+         call write_step(self, run, fault)
+      case (STAGE_ENDS)
+         call look_at_creation(self, run)
+      case (ENDS)
+         call close_csv(self%table, fault)
+      end select
+   end subroutine hear
 
    !> Books a step: energies, work, outflow, contacts; and ends a run that creates energy: in PATIENCE steps in a row
    !> more than the stage may, or in its last one. docs/theory/host.md section 9. Fault EXIT_ENERGY.
-   subroutine step(self, run, fault)
+   subroutine book(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
@@ -113,7 +114,7 @@ contains
                     ' s: the run has created '//amount(ledger)//', allowed '//short(100*stage%created_energy)// &
                     ' %. Its results may be wrong by any factor: '//REMEDY//'; created_energy of &stage allows more.')
       end associate
-   end subroutine step
+   end subroutine book
 
    !> Adds the means of forces of terms to those of the contacts [kN]. docs/theory/host.md section 9.
    subroutine add_means(run, force)
@@ -144,7 +145,7 @@ contains
 
    !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
    !> written.
-   subroutine taken_over(self, run, fault)
+   subroutine write_step(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
@@ -161,14 +162,13 @@ contains
       end associate
       call write_row(self%table, fault)
       call hand_over(self%table, fault)
-   end subroutine taken_over
+   end subroutine write_step
 
    !> Warns at the end of a dynamic stage that has created much, on standard error, also where the run is quiet. From
    !> ALARMING_SHARE of the largest work on; nothing beyond what has ended the run.
-   subroutine stage_ends(self, run, fault)
+   subroutine look_at_creation(self, run)
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
 
       associate (stage => run%stage, ledger => self%ledger)
          if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
@@ -177,16 +177,7 @@ contains
          call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &
             '. Do not use its results: '//REMEDY//'.')
       end associate
-   end subroutine stage_ends
-
-   !> Closes ledger.csv. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, run, fault)
-      class(ledger_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      call close_csv(self%table, fault)
-   end subroutine ends
+   end subroutine look_at_creation
 
    !> Energy in kJ and as a share.
    function amount(ledger) result(text)
