@@ -89,7 +89,7 @@ contains
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp) :: force(run%model%dofs%n), t0
+      real(wp) :: force(run%model%dofs%n)
 
       associate (ledger => self%ledger, stage => run%stage)
          if (run%at%step == 1) then
@@ -97,10 +97,7 @@ contains
             ! The velocities of a stage without inertia are no motion: each stage begins its own account.
             if (run%steps > 1) ledger%open_0 = imbalance(ledger)
          end if
-         t0 = clock()
-         force = mean_contact_forces(run)
-         if (allocated(run%system%contacts)) call add_elapsed(run%system%seconds(T_CONTACT), t0)
-         call add_means(run, force)
+         call find_mean_forces(run, force)
          call book_step(force, run, self%damping_stress, ledger)
          call book_creation(run%scheme, stage%tolerance, run%model%dofs, run%assembly%scale, run%next%x - run%state%x, &
                             ledger)
@@ -116,32 +113,31 @@ contains
       end associate
    end subroutine book
 
-   !> Adds the means of forces of terms to those of the contacts [kN]. docs/theory/host.md section 9.
-   subroutine add_means(run, force)
-      type(run_t), intent(in) :: run
-      real(wp), intent(inout) :: force(:)   !< (unknowns)
+   !> Mean of the forces of contacts and terms at the ends of a step, to be added to the internal ones; those of the
+   !> contacts are zero where the displacements are refused [kN]. docs/theory/host.md section 9.
+   subroutine find_mean_forces(run, force)
+      type(run_t), intent(inout) :: run     !< The contacts are probed.
+      real(wp), intent(out) :: force(:)     !< (unknowns)
+      real(wp), allocatable :: before(:), after(:)
+      real(wp) :: t0
       integer :: i
 
-      do i = 1, size(run%constraint%added)
-         associate (one => run%constraint%added(i)%it)
-            if (one%acts) call one%add_means(run%model%dofs, run%scheme, run%state, run%next, force)
-         end associate
-      end do
-   end subroutine add_means
-
-   !> Mean of the forces of the contacts at the ends of a step, to be added to the internal ones; zero without contacts
-   !> and where the displacements are refused [kN]. (unknowns)
-   function mean_contact_forces(run) result(force)
-      type(run_t), intent(inout) :: run   !< The contacts are probed.
-      real(wp) :: force(run%model%dofs%n)
-      real(wp), allocatable :: before(:), after(:)
-
       force = 0.0_wp
-      if (.not. allocated(run%system%contacts)) return
-      if (.not. run%system%contacts%forces(run%model%dofs, run%state%x, before)) return
-      if (.not. run%system%contacts%forces(run%model%dofs, run%next%x, after)) return
-      force = 0.5_wp*(before + after)
-   end function mean_contact_forces
+      associate (dofs => run%model%dofs)
+         if (allocated(run%system%contacts)) then
+            t0 = clock()
+            if (run%system%contacts%forces(dofs, run%state%x, before)) then
+               if (run%system%contacts%forces(dofs, run%next%x, after)) force = 0.5_wp*(before + after)
+            end if
+            call add_elapsed(run%system%seconds(T_CONTACT), t0)
+         end if
+         do i = 1, size(run%constraint%added)
+            associate (one => run%constraint%added(i)%it)
+               if (one%acts) call one%add_means(dofs, run%scheme, run%state, run%next, force)
+            end associate
+         end do
+      end associate
+   end subroutine find_mean_forces
 
    !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
    !> written.
