@@ -6,6 +6,7 @@
 !> interface_z_J.
 module graded_rectangle
    use kinds, only: wp
+   use texts, only: whole
    use triangle_mesh, only: mesh_t, add_group
    implicit none (type, external)
    private
@@ -105,15 +106,13 @@ contains
          integer :: cell(2*nr*nz), none(3, 0)
          logical :: inside(2*nr*nz)
          integer :: p, q, c
-         character(24) :: name
 
          cell = [(c, c=1, 2*nr*nz)]
          call add_group(mesh, 'all', cell, none, [integer ::])
          do q = 1, size(z_cells)
             do p = 1, size(r_cells)
                inside = [(r_piece(mod((c - 1)/2, nr) + 1) == p .and. z_piece((c - 1)/2/nr + 1) == q, c=1, 2*nr*nz)]
-               write (name, '(a,i0,a,i0)') 'block_', p, '_', q
-               call add_group(mesh, trim(name), pack(cell, inside), none, [integer ::])
+               call add_group(mesh, 'block_'//whole(p)//'_'//whole(q), pack(cell, inside), none, [integer ::])
             end do
          end do
       end subroutine add_regions
@@ -121,57 +120,43 @@ contains
       subroutine add_sides()
          integer :: c
 
-         call add_side('bottom', reshape([(node(2*c - 2, 0), node(2*c, 0), node(2*c - 1, 0), c=1, nr)], &
+         call add_side('bottom', '', reshape([(node(2*c - 2, 0), node(2*c, 0), node(2*c - 1, 0), c=1, nr)], &
                                          [3, nr]), r_piece)
-         call add_side('right', reshape([(node(2*nr, 2*c - 2), node(2*nr, 2*c), node(2*nr, 2*c - 1), c=1, nz)], &
+         call add_side('right', '', reshape([(node(2*nr, 2*c - 2), node(2*nr, 2*c), node(2*nr, 2*c - 1), c=1, nz)], &
                                         [3, nz]), z_piece)
-         call add_side('top', reshape([(node(2*c, 2*nz), node(2*c - 2, 2*nz), node(2*c - 1, 2*nz), c=1, nr)], &
+         call add_side('top', '', reshape([(node(2*c, 2*nz), node(2*c - 2, 2*nz), node(2*c - 1, 2*nz), c=1, nr)], &
                                       [3, nr]), r_piece)
-         call add_side('left', reshape([(node(0, 2*c), node(0, 2*c - 2), node(0, 2*c - 1), c=1, nz)], [3, nz]), z_piece)
+         call add_side('left', '', reshape([(node(0, 2*c), node(0, 2*c - 2), node(0, 2*c - 1), c=1, nz)], &
+                                           [3, nz]), z_piece)
       end subroutine add_sides
 
       !> Edges between blocks, the block before on their left: what acts on them takes its side from the ground.
       subroutine add_interfaces()
          integer :: i, j, c
-         character(24) :: name
 
          do i = 1, nr - 1
             if (r_piece(i) == r_piece(i + 1)) cycle
-            write (name, '(a,i0)') 'interface_r_', r_piece(i)
-            call add_side(trim(name), reshape([(node(2*i, 2*c - 2), node(2*i, 2*c), node(2*i, 2*c - 1), c=1, nz)], &
-                                              [3, nz]), z_piece)
+            call add_side('interface_r_'//whole(r_piece(i)), '', &
+                          reshape([(node(2*i, 2*c - 2), node(2*i, 2*c), node(2*i, 2*c - 1), c=1, nz)], &
+                                  [3, nz]), z_piece)
          end do
          do j = 1, nz - 1
             if (z_piece(j) == z_piece(j + 1)) cycle
-            call add_interface_z(reshape([(node(2*c, 2*j), node(2*c - 2, 2*j), node(2*c - 1, 2*j), c=1, nr)], &
-                                         [3, nr]), z_piece(j))
+            call add_side('interface_z', '_'//whole(z_piece(j)), &
+                          reshape([(node(2*c, 2*j), node(2*c - 2, 2*j), node(2*c - 1, 2*j), c=1, nr)], &
+                                  [3, nr]), r_piece)
          end do
       end subroutine add_interfaces
 
-      !> The number along r comes first in the names of the pieces, as in those of the blocks.
-      subroutine add_interface_z(edges, number)
-         integer, intent(in) :: edges(:, :), number
-         character(24) :: name
-         integer :: p, c
-
-         write (name, '(a,i0)') 'interface_z_', number
-         call add_group(mesh, trim(name), [integer ::], edges, [integer ::])
-         do p = 1, maxval(r_piece)
-            write (name, '(a,i0,a,i0)') 'interface_z_', p, '_', number
-            call add_group(mesh, trim(name), [integer ::], edges(:, pack([(c, c=1, nr)], r_piece == p)), [integer ::])
-         end do
-      end subroutine add_interface_z
-
-      subroutine add_side(name, edges, piece)
-         character(*), intent(in) :: name
+      !> A boundary and its pieces, whose numbers stand before the end of its name.
+      subroutine add_side(name, ending, edges, piece)
+         character(*), intent(in) :: name, ending
          integer, intent(in) :: edges(:, :), piece(:)
-         character(24) :: part
          integer :: p, c
 
-         call add_group(mesh, name, [integer ::], edges, [integer ::])
+         call add_group(mesh, name//ending, [integer ::], edges, [integer ::])
          do p = 1, maxval(piece)
-            write (part, '(a,a,i0)') name, '_', p
-            call add_group(mesh, trim(part), [integer ::], &
+            call add_group(mesh, name//'_'//whole(p)//ending, [integer ::], &
                            edges(:, pack([(c, c=1, size(piece))], piece == p)), [integer ::])
          end do
       end subroutine add_side

@@ -36,10 +36,8 @@ contains
       integer :: s, k
 
       edges = model%domain%mesh%groups(group)%edges
-      do s = 1, size(model%stages)
-         if (acts_in(stages, model%stages(s)%name)) exit
-      end do
-      if (s > size(model%stages)) return
+      s = findloc([(acts_in(stages, model%stages(s)%name), s=1, size(model%stages))], .true., dim=1)
+      if (s == 0) return
       sides = sides_with_ground(model, group, s)
       do k = 1, size(edges, 2)
          if (sides(k) == ON_RIGHT) edges(1:2, k) = edges([2, 1], k)

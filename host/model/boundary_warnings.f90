@@ -163,26 +163,15 @@ contains
    !> Histories of which a part lies before what they act on: times are those of the run, not of the stage.
    subroutine look_at_histories(model)
       type(model_t), intent(in) :: model
-      integer :: i
+      integer :: i, s
 
       do i = 1, size(model%actions)
          associate (one => model%actions(i))
-            call look(one, max(one%from, first_time(one%stages)))
+            s = findloc([(acts_in(one%stages, model%stages(s)%name), s=1, size(model%stages))], .true., dim=1)
+            call look(one, max(one%from, sum(model%stages(:s - 1)%duration)))
          end associate
       end do
    contains
-      !> Start of the first stage in which something acts [s].
-      real(wp) function first_time(stages) result(start)
-         character(*), intent(in) :: stages(:)
-         integer :: s
-
-         start = 0.0_wp
-         do s = 1, size(model%stages)
-            if (acts_in(stages, model%stages(s)%name)) return
-            start = start + model%stages(s)%duration
-         end do
-      end function first_time
-
       subroutine look(item, start)
          type(action_t), intent(in) :: item
          real(wp), intent(in) :: start   !< When it begins to act [s].

@@ -5,7 +5,7 @@ module checkpoints
    use archive, only: archive_t
    use archive_file, only: archive_file_t, archive_kind_t, create_archive, open_archive, close_archive
    use run_state, only: run_t, exchange_run
-   use run_observer, only: observer_t, observers_t, slot_t
+   use run_observer, only: observer_t, observers_t, slot_t, BEGINS, TAKEN_OVER
    use wall_clock, only: clock
    use interrupts, only: interrupted, EXIT_INTERRUPTED
    use kinds, only: wp
@@ -28,22 +28,23 @@ module checkpoints
    type, extends(observer_t) :: checkpoint_observer_t
       real(wp) :: last = 0.0_wp   !< When it was written, on the wall clock [s].
    contains
-      procedure :: begins
-      procedure :: taken_over
+      procedure :: hear
    end type checkpoint_observer_t
 contains
-   !> Begins to count the time to the first checkpoint.
-   subroutine begins(self, run, fault)
+   !> Begins to count the time to the first checkpoint, and keeps the run after its steps. Faults: those of keep_run.
+   subroutine hear(self, event, run, fault)
       class(checkpoint_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      self%last = clock()
-   end subroutine begins
+      if (event == BEGINS) self%last = clock()
+      if (event == TAKEN_OVER) call keep_run(self, run, fault)
+   end subroutine hear
 
    !> Writes a checkpoint where it is due, and ends a run that is interrupted. A run that is taken up here has no
    !> factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be written; EXIT_INTERRUPTED.
-   subroutine taken_over(self, run, fault)
+   subroutine keep_run(self, run, fault)
       class(checkpoint_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
@@ -64,7 +65,7 @@ contains
           .not. (run%news%last .and. run%at%stage == size(run%model%stages))) call raise(fault, &
          EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to there are complete; '// &
          '--restart '//self%folder//'/'//CHECKPOINT//' goes on.')
-   end subroutine taken_over
+   end subroutine keep_run
 
    !> Writes the complete state of a run to checkpoint.h5, in place of an older one. Fault EXIT_OUTPUT: a table or the
    !> checkpoint cannot be written.

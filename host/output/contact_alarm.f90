@@ -7,7 +7,7 @@ module contact_alarm
    use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
    use generalised_alpha, only: has_inertia
    use faults, only: fault_t
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, STAGE_BEGINS, STEP
    use run_state, only: run_t
    use scene_parts, only: acts_in
    use texts, only: short
@@ -28,23 +28,31 @@ module contact_alarm
    type, extends(observer_t) :: contact_alarm_t
       logical, allocatable :: told(:)   !< (contacts) The warning of penetration has been given.
    contains
-      procedure :: stage_begins
-      procedure :: step
+      procedure :: hear
    end type contact_alarm_t
 contains
-   !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
-   !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
-   subroutine stage_begins(self, run, fault)
+   !> Looks at contacts where they begin to act, and after every step.
+   subroutine hear(self, event, run, fault)
       class(contact_alarm_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
       if (size(run%model%contacts) == 0) return
+      if (event == STAGE_BEGINS) call look_at_overlaps(run)
+      if (event == STEP) call look_at_penetration(self, run)
+   end subroutine hear
+
+   !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
+   !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
+   subroutine look_at_overlaps(run)
+      type(run_t), intent(inout) :: run
+
       select type (contacts => run%system%contacts)
       type is (contacts_t)
          if (contacts%probe(run%state%x)) call warn_of_overlaps(run, contacts%interfaces)
       end select
-   end subroutine stage_begins
+   end subroutine look_at_overlaps
 
    subroutine warn_of_overlaps(run, interfaces)
       type(run_t), intent(in) :: run
@@ -91,13 +99,11 @@ contains
 
    !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
-   subroutine step(self, run, fault)
+   subroutine look_at_penetration(self, run)
       class(contact_alarm_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
       integer :: i
 
-      if (size(run%model%contacts) == 0) return
       if (.not. allocated(self%told)) allocate (self%told(size(run%model%contacts)), source=.false.)
       select type (contacts => run%system%contacts)
       type is (contacts_t)
@@ -113,5 +119,5 @@ contains
             end associate
          end do
       end select
-   end subroutine step
+   end subroutine look_at_penetration
 end module contact_alarm

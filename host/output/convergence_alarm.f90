@@ -3,7 +3,7 @@
 !> applied evenly, and an error that stays above the tolerance.
 module convergence_alarm
    use faults, only: fault_t
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, STEP
    use run_state, only: run_t, now_in
    use texts, only: short
    use warnings, only: print_warning
@@ -14,16 +14,18 @@ module convergence_alarm
    type, extends(observer_t) :: convergence_alarm_t
       integer :: told = 0   !< Stage whose stagnation has been told.
    contains
-      procedure :: step
+      procedure :: hear
    end type convergence_alarm_t
 contains
    !> Tells of both once a stage, on standard error, also where the run is quiet. docs/theory/host.md sections 4.4 and
    !> 5.1.
-   subroutine step(self, run, fault)
+   subroutine hear(self, event, run, fault)
       class(convergence_alarm_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
+      if (event /= STEP) return
       if (run%at%step == 1 .and. allocated(run%at%sudden)) &
          call print_warning('stage '//trim(run%stage%name)//': its loads act at once and the '// &
             'first step did not converge: they are applied evenly over the stage. A material with a '// &
@@ -34,5 +36,5 @@ contains
          ' and cannot reach its tolerance of '//short(run%newton%tolerance)//', because stresses are integrated to '// &
          short(run%newton%roughness)//'. The step is accepted. Give &stage a tolerance above the error reached, or '// &
          'the material a smaller one.')
-   end subroutine step
+   end subroutine hear
 end module convergence_alarm

@@ -7,7 +7,7 @@ module cycles_alarm
    use faults, only: fault_t
    use kinds, only: wp
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, BEGINS, STEP
    use run_state, only: run_t, now_in
    use scene_parts, only: amplitude_at, acts_in
    use texts, only: short, whole
@@ -33,8 +33,7 @@ module cycles_alarm
       logical :: told = .false.
    contains
       procedure :: exchange
-      procedure :: begins
-      procedure :: step
+      procedure :: hear
    end type cycles_alarm_t
 contains
    !> Exchanges what is counted; a run that is taken up tells it again.
@@ -50,11 +49,21 @@ contains
       call archive%leave('cycles')
    end subroutine exchange
 
-   !> Makes room for the histories and the displacements, which start where the run does.
-   subroutine begins(self, run, fault)
+   !> Counts from the start of the run, step by step.
+   subroutine hear(self, event, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
+
+      if (event == BEGINS) call begin_to_count(self, run)
+      if (event == STEP) call count_turns(self, run)
+   end subroutine hear
+
+   !> Makes room for the histories and the displacements, which start where the run does.
+   subroutine begin_to_count(self, run)
+      class(cycles_alarm_t), intent(inout) :: self
+      type(run_t), intent(inout) :: run
       integer :: i
 
       associate (nodes => run%model%domain%mesh%t6, of => run%model%domain%region_of)
@@ -67,14 +76,13 @@ contains
       self%farthest = [(amplitude_at(run%model%amplitudes(i), run%state%time), i=1, size(run%model%amplitudes)), &
                        run%state%x(:DISPLACEMENTS, :)]
       allocate (self%sense(size(self%farthest)), self%turns(size(self%farthest)), source=0)
-   end subroutine begins
+   end subroutine begin_to_count
 
    !> Counts the turns of the histories that act in the stage and of the displacements of the ground, and tells when one
    !> has many, once, on standard error.
-   subroutine step(self, run, fault)
+   subroutine count_turns(self, run)
       class(cycles_alarm_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
       real(wp) :: factor, least
       integer :: i, n, at
 
@@ -110,7 +118,7 @@ contains
             end associate
          end if
       end function what_turned
-   end subroutine step
+   end subroutine count_turns
 
    !> Counts the turns of displacements. When the largest one has doubled, turns before it are small and count no more.
    subroutine follow_ground(self, u, n)

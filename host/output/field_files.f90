@@ -7,7 +7,7 @@ module field_files
    use kinds, only: wp
    use model_types, only: model_t
    use porous_domain, only: domain_t, model_state_t
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, BEGINS, TAKEN_OVER, STAGE_ENDS
    use run_state, only: run_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    use files, only: write_whole, bytes_of
@@ -22,9 +22,7 @@ module field_files
       real(wp), allocatable :: times(:)   !< Times of the fields written so far [s].
    contains
       procedure :: exchange
-      procedure :: begins
-      procedure :: taken_over
-      procedure :: stage_ends
+      procedure :: hear
    end type field_observer_t
 
    real(wp), parameter :: PICTURES = 50.0_wp   !< Fields of a stage with controlled steps, if no key says when.
@@ -47,28 +45,34 @@ contains
       if (.not. allocated(self%times)) call archive%refuse()
    end subroutine exchange
 
-   !> A new run writes its mesh and its start. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine begins(self, run, fault)
+   !> Writes mesh and start of a new run, the fields after steps where they are due, and those at the end of a stage;
+   !> after a failure too. Fault EXIT_OUTPUT: they cannot be written.
+   subroutine hear(self, event, run, fault)
       class(field_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (run%steps > 0) return
-      allocate (self%times(0))
-      call write_mesh(self%folder, run%model, fault)
-      if (fault%code == 0) call write_frame(self, run, fault)
-   end subroutine begins
+      select case (event)
+      case (BEGINS)
+         if (run%steps > 0) return
+         allocate (self%times(0))
+         call write_mesh(self%folder, run%model, fault)
+         if (fault%code == 0) call write_frame(self, run, fault)
+      case (TAKEN_OVER)
+         if (is_due(run)) call write_frame(self, run, fault)
+      case (STAGE_ENDS)
+         call write_frame(self, run, fault)
+      end select
+   end subroutine hear
 
-   !> Writes the fields after a step where they are due within a stage. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine taken_over(self, run, fault)
-      class(field_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
+   !> Whether fields are due after a step within a stage.
+   pure logical function is_due(run) result(due)
+      type(run_t), intent(in) :: run
       real(wp) :: now, before
-      logical :: due
 
-      if (run%news%last) return
       due = .false.
+      if (run%news%last) return
       now = run%state%time - run%at%t_start
       before = run%state%time - run%scheme%dt - run%at%t_start
       associate (stage => run%stage)
@@ -80,7 +84,6 @@ contains
             due = picture_of(now/stage%duration) > picture_of(before/stage%duration)
          end if
       end associate
-      if (due) call write_frame(self, run, fault)
    contains
       !> Number of the last picture up to a share of the stage.
       pure integer function picture_of(share)
@@ -88,16 +91,7 @@ contains
 
          picture_of = floor(PICTURES*share*(1 + ON_TIME))
       end function picture_of
-   end subroutine taken_over
-
-   !> Writes the fields at the end of a stage; after a failure too. Fault EXIT_OUTPUT: they cannot be written.
-   subroutine stage_ends(self, run, fault)
-      class(field_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      call write_frame(self, run, fault)
-   end subroutine stage_ends
+   end function is_due
 
    !> mesh.h5: nodes, elements, quadrature points, region of every element. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_mesh(folder, model, fault)

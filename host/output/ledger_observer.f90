@@ -13,7 +13,7 @@ module ledger_observer
    use generalised_alpha, only: has_inertia
    use kinds, only: wp
    use linear_system, only: T_CONTACT
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, FITS, BEGINS, STEP, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
    use texts, only: short
@@ -42,12 +42,7 @@ module ledger_observer
       real(wp), allocatable :: indicators(:)   !< Indicators of the last step.
    contains
       procedure :: exchange
-      procedure :: fits
-      procedure :: begins
-      procedure :: step
-      procedure :: taken_over
-      procedure :: stage_ends
-      procedure :: ends
+      procedure :: hear
    end type ledger_observer_t
 contains
    !> Exchanges ledger, stress of the damping and the length of the table.
@@ -61,34 +56,40 @@ contains
       call exchange_table('ledger', self%table, archive)
    end subroutine exchange
 
-   !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: ledger.csv is missing or too short.
-   subroutine fits(self, run, fault)
+   !> Books every step and writes its row in ledger.csv. Faults: EXIT_RESTART, the table is missing or too short;
+   !> EXIT_OUTPUT, it cannot be written; those of book.
+   subroutine hear(self, event, run, fault)
       class(ledger_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
-   end subroutine fits
-
-   !> Opens ledger.csv. Fault EXIT_OUTPUT: it cannot be written.
-   subroutine begins(self, run, fault)
-      class(ledger_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (run%steps == 0 .and. any(run%model%domain%regions%stiffness_damping > 0.0_wp)) &
-         allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
-      if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS//indicator_columns(run%model), &
-                                                  run%steps > 0, self%table, fault)
-   end subroutine begins
+      select case (event)
+      case (FITS)
+         if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
+      case (BEGINS)
+         if (run%steps == 0 .and. any(run%model%domain%regions%stiffness_damping > 0.0_wp)) &
+            allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
+         if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS// &
+                                                     indicator_columns(run%model), run%steps > 0, self%table, fault)
+      case (STEP)
+         call book(self, run, fault)
+      case (TAKEN_OVER)
+         call write_step(self, run, fault)
+      case (STAGE_ENDS)
+         call look_at_creation(self, run)
+      case (ENDS)
+         call close_csv(self%table, fault)
+      end select
+   end subroutine hear
 
    !> Books a step: energies, work, outflow, contacts; and ends a run that creates energy: in PATIENCE steps in a row
    !> more than the stage may, or in its last one. docs/theory/host.md section 9. Fault EXIT_ENERGY.
-   subroutine step(self, run, fault)
+   subroutine book(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp) :: force(run%model%dofs%n), t0
+      real(wp) :: force(run%model%dofs%n)
 
       associate (ledger => self%ledger, stage => run%stage)
          if (run%at%step == 1) then
@@ -96,10 +97,7 @@ contains
             ! The velocities of a stage without inertia are no motion: each stage begins its own account.
             if (run%steps > 1) ledger%open_0 = imbalance(ledger)
          end if
-         t0 = clock()
-         force = mean_contact_forces(run)
-         if (allocated(run%system%contacts)) call add_elapsed(run%system%seconds(T_CONTACT), t0)
-         call add_means(run, force)
+         call find_mean_forces(run, force)
          call book_step(force, run, self%damping_stress, ledger)
          call book_creation(run%scheme, stage%tolerance, run%model%dofs, run%assembly%scale, run%next%x - run%state%x, &
                             ledger)
@@ -113,38 +111,37 @@ contains
                     ' s: the run has created '//amount(ledger)//', allowed '//short(100*stage%created_energy)// &
                     ' %. Its results may be wrong by any factor: '//REMEDY//'; created_energy of &stage allows more.')
       end associate
-   end subroutine step
+   end subroutine book
 
-   !> Adds the means of forces of terms to those of the contacts [kN]. docs/theory/host.md section 9.
-   subroutine add_means(run, force)
-      type(run_t), intent(in) :: run
-      real(wp), intent(inout) :: force(:)   !< (unknowns)
+   !> Mean of the forces of contacts and terms at the ends of a step, to be added to the internal ones; those of the
+   !> contacts are zero where the displacements are refused [kN]. docs/theory/host.md section 9.
+   subroutine find_mean_forces(run, force)
+      type(run_t), intent(inout) :: run     !< The contacts are probed.
+      real(wp), intent(out) :: force(:)     !< (unknowns)
+      real(wp), allocatable :: before(:), after(:)
+      real(wp) :: t0
       integer :: i
 
-      do i = 1, size(run%constraint%added)
-         associate (one => run%constraint%added(i)%it)
-            if (one%acts) call one%add_means(run%model%dofs, run%scheme, run%state, run%next, force)
-         end associate
-      end do
-   end subroutine add_means
-
-   !> Mean of the forces of the contacts at the ends of a step, to be added to the internal ones; zero without contacts
-   !> and where the displacements are refused [kN]. (unknowns)
-   function mean_contact_forces(run) result(force)
-      type(run_t), intent(inout) :: run   !< The contacts are probed.
-      real(wp) :: force(run%model%dofs%n)
-      real(wp), allocatable :: before(:), after(:)
-
       force = 0.0_wp
-      if (.not. allocated(run%system%contacts)) return
-      if (.not. run%system%contacts%forces(run%model%dofs, run%state%x, before)) return
-      if (.not. run%system%contacts%forces(run%model%dofs, run%next%x, after)) return
-      force = 0.5_wp*(before + after)
-   end function mean_contact_forces
+      associate (dofs => run%model%dofs)
+         if (allocated(run%system%contacts)) then
+            t0 = clock()
+            if (run%system%contacts%forces(dofs, run%state%x, before)) then
+               if (run%system%contacts%forces(dofs, run%next%x, after)) force = 0.5_wp*(before + after)
+            end if
+            call add_elapsed(run%system%seconds(T_CONTACT), t0)
+         end if
+         do i = 1, size(run%constraint%added)
+            associate (one => run%constraint%added(i)%it)
+               if (one%acts) call one%add_means(dofs, run%scheme, run%state, run%next, force)
+            end associate
+         end do
+      end associate
+   end subroutine find_mean_forces
 
    !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
    !> written.
-   subroutine taken_over(self, run, fault)
+   subroutine write_step(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
@@ -161,14 +158,13 @@ contains
       end associate
       call write_row(self%table, fault)
       call hand_over(self%table, fault)
-   end subroutine taken_over
+   end subroutine write_step
 
    !> Warns at the end of a dynamic stage that has created much, on standard error, also where the run is quiet. From
    !> ALARMING_SHARE of the largest work on; nothing beyond what has ended the run.
-   subroutine stage_ends(self, run, fault)
+   subroutine look_at_creation(self, run)
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
 
       associate (stage => run%stage, ledger => self%ledger)
          if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
@@ -177,16 +173,7 @@ contains
          call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &
             '. Do not use its results: '//REMEDY//'.')
       end associate
-   end subroutine stage_ends
-
-   !> Closes ledger.csv. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, run, fault)
-      class(ledger_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      call close_csv(self%table, fault)
-   end subroutine ends
+   end subroutine look_at_creation
 
    !> Energy in kJ and as a share.
    function amount(ledger) result(text)

@@ -8,7 +8,7 @@ module localisation
    use faults, only: fault_t
    use kinds, only: wp, PI
    use porous_domain, only: is_present, strain_of
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, BEGINS, STEP, STAGE_ENDS
    use run_state, only: run_t, now_in
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS
@@ -32,9 +32,7 @@ module localisation
       logical :: told = .false.
    contains
       procedure :: exchange
-      procedure :: begins
-      procedure :: step
-      procedure :: stage_ends
+      procedure :: hear
    end type localisation_observer_t
 contains
    !> Exchanges what is booked; a run that is taken up tells it again.
@@ -52,21 +50,33 @@ contains
       call archive%leave('localisation')
    end subroutine exchange
 
-   !> Makes room for the points.
-   subroutine begins(self, run, fault)
+   !> Books every step, and forgets all where displacements begin to count anew.
+   subroutine hear(self, event, run, fault)
       class(localisation_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (run%steps == 0) allocate (self%work(size(run%state%e)), source=0.0_wp)
-   end subroutine begins
+      select case (event)
+      case (BEGINS)
+         if (run%steps == 0) allocate (self%work(size(run%state%e)), source=0.0_wp)
+      case (STEP)
+         call book(self, run)
+      case (STAGE_ENDS)
+         if (.not. (run%news%complete .and. run%stage%zero_displacements)) return
+         self%shear = 0.0_wp
+         self%localised = 0.0_wp
+         self%work = 0.0_wp
+         self%is_above = .false.
+         self%told = .false.
+      end select
+   end subroutine hear
 
    !> Books a step, gives its share to the ledger, and tells a share above TOLD_SHARE, once, on standard error. Points
    !> are looked at in parallel, and added up in their order.
-   subroutine step(self, run, fault)
+   subroutine book(self, run)
       class(localisation_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
       real(wp), allocatable :: work(:)
       logical, allocatable :: lost(:)
       real(wp) :: least
@@ -98,7 +108,7 @@ contains
       if (self%told .or. .not. self%is_above) return
       self%told = .true.
       call tell(self, run, worst)
-   end subroutine step
+   end subroutine book
 
    !> The points of an element: shear work of the step, where positive, and whether the tangent has lost ellipticity.
    pure subroutine look_at_element(run, e, work, lost)
@@ -143,18 +153,4 @@ contains
          ' degrees from r towards z. Displacements depend on the cell there and have no limit: state the cell with '// &
          'them, or give the &region a viscosity.')
    end subroutine tell
-
-   !> Forgets all where displacements begin to count anew.
-   subroutine stage_ends(self, run, fault)
-      class(localisation_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (.not. (run%news%complete .and. run%stage%zero_displacements)) return
-      self%shear = 0.0_wp
-      self%localised = 0.0_wp
-      self%work = 0.0_wp
-      self%is_above = .false.
-      self%told = .false.
-   end subroutine stage_ends
 end module localisation

@@ -11,7 +11,7 @@ module output_tables
    use model_types, only: model_t, point_t
    use named_points, only: unknowns_at, motion_at
    use reaction_rows, only: reaction_columns, reaction_row
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, FITS, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table, write_table
    use unknown_fields, only: FIELDS, DISPLACEMENTS
@@ -28,11 +28,7 @@ module output_tables
       type(csv_t) :: reactions   !< Table of the stage under way, if it prescribes or loads anything.
    contains
       procedure :: exchange
-      procedure :: fits
-      procedure :: begins
-      procedure :: taken_over
-      procedure :: stage_ends
-      procedure :: ends
+      procedure :: hear
    end type table_observer_t
 contains
    !> Exchanges the lengths of the tables.
@@ -45,38 +41,45 @@ contains
       call exchange_table('reactions', self%reactions, archive)
    end subroutine exchange
 
-   !> Refuses a folder without the rows of the run. Fault EXIT_RESTART: a table is missing, too short or cannot be
-   !> written.
-   subroutine fits(self, run, fault)
+   !> Opens the tables, writes the rows of steps, and the tables of a stage at its end; after a failure too, for what
+   !> was computed. Faults: EXIT_RESTART, a table is missing or too short; EXIT_OUTPUT, a file cannot be written.
+   subroutine hear(self, event, run, fault)
       class(table_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      call check_csv(self%folder//'/histories.csv', self%history%bytes, fault)
-      if (fault%code == 0 .and. has_contact_table(run%model)) &
-         call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
-      if (fault%code == 0 .and. self%reactions%bytes > 0) &
-         call check_csv(reactions_of(self%folder, run%stage%name), self%reactions%bytes, fault)
-   end subroutine fits
-
-   !> Opens the tables; a new run writes its start. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine begins(self, run, fault)
-      class(table_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-      logical :: resume
-
-      resume = run%steps > 0
-      call open_table(self%folder//'/histories.csv', history_columns(run%model), resume, self%history, fault)
-      if (has_contact_table(run%model)) call open_table(self%folder//'/contact.csv', contact_columns(run%model), &
-                                                        resume, self%contact, fault)
-      if (fault%code /= 0 .or. resume) return
-      call write_points(self%folder, run%model, fault)
-      if (fault%code == 0) call write_history(self%history, run, fault)
-   end subroutine begins
+      select case (event)
+      case (FITS)
+         call check_csv(self%folder//'/histories.csv', self%history%bytes, fault)
+         if (fault%code == 0 .and. has_contact_table(run%model)) &
+            call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
+         if (fault%code == 0 .and. self%reactions%bytes > 0) &
+            call check_csv(reactions_of(self%folder, run%stage%name), self%reactions%bytes, fault)
+      case (BEGINS)
+         call open_table(self%folder//'/histories.csv', history_columns(run%model), run%steps > 0, self%history, fault)
+         if (has_contact_table(run%model)) call open_table(self%folder//'/contact.csv', contact_columns(run%model), &
+                                                           run%steps > 0, self%contact, fault)
+         if (fault%code /= 0 .or. run%steps > 0) return
+         call write_points(self%folder, run%model, fault)
+         if (fault%code == 0) call write_history(self%history, run, fault)
+      case (TAKEN_OVER)
+         call write_rows(self, run, fault)
+      case (STAGE_ENDS)
+         call close_csv(self%reactions, fault)
+         self%reactions%bytes = 0
+         call write_fields(self%folder//'/', run, trim(run%stage%name)//'.csv', fault)
+         if (allocated(run%system%contacts)) call write_table(self%folder//'/contact_'//trim(run%stage%name)//'.csv', &
+            'contact,r,z,weight,coverage,gap,pressure,shear', contact_nodes(run), fault)
+      case (ENDS)
+         call close_csv(self%history, fault)
+         call close_csv(self%contact, fault)
+         call close_csv(self%reactions, fault)
+      end select
+   end subroutine hear
 
    !> Writes the rows of a step that are due. Fault EXIT_OUTPUT: a file cannot be written.
-   subroutine taken_over(self, run, fault)
+   subroutine write_rows(self, run, fault)
       class(table_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
@@ -92,34 +95,7 @@ contains
       call hand_over(self%history, fault)
       call hand_over(self%contact, fault)
       call hand_over(self%reactions, fault)
-   end subroutine taken_over
-
-   !> Ends the table of reactions, and writes the tables of a stage; after a failure too, for what was computed. Fault
-   !> EXIT_OUTPUT: a file cannot be written.
-   subroutine stage_ends(self, run, fault)
-      class(table_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: name
-
-      call close_csv(self%reactions, fault)
-      self%reactions%bytes = 0
-      name = trim(run%stage%name)
-      call write_fields(self%folder//'/', run, name//'.csv', fault)
-      if (allocated(run%system%contacts)) call write_table(self%folder//'/contact_'//name//'.csv', &
-         'contact,r,z,weight,coverage,gap,pressure,shear', contact_nodes(run), fault)
-   end subroutine stage_ends
-
-   !> Closes the tables; the first that fails is reported. Fault EXIT_OUTPUT: a disk is full.
-   subroutine ends(self, run, fault)
-      class(table_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      call close_csv(self%history, fault)
-      call close_csv(self%contact, fault)
-      call close_csv(self%reactions, fault)
-   end subroutine ends
+   end subroutine write_rows
 
    pure logical function has_contact_table(model)
       type(model_t), intent(in) :: model

@@ -10,7 +10,7 @@ module pressure_alarm
    use material_point, only: lost_pressure, PRESSURE_LOST
    use faults, only: fault_t
    use porous_domain, only: is_present, COUPLED
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, STEP
    use run_state, only: run_t, now_in
    use texts, only: short
    use unknown_fields, only: AT_P_W
@@ -35,20 +35,22 @@ module pressure_alarm
       type(lines_t) :: lines   !< Lines of the mesh; found when they are asked for first.
       logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false., told_dry = .false.
    contains
-      procedure :: step
+      procedure :: hear
    end type pressure_alarm_t
 contains
    !> Warns of each once a run, on standard error, also where the run is quiet.
-   subroutine step(self, run, fault)
+   subroutine hear(self, event, run, fault)
       class(pressure_alarm_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
+      if (event /= STEP) return
       call warn_of_oscillation(run, self%lines, self%told_oscillation)
       call warn_lost_pressure(run, self%told_pressure)
       call warn_of_inflow(run, self%told_inflow)
       call warn_of_dry_ground(run, self%told_dry)
-   end subroutine step
+   end subroutine hear
 
    !> Warns of pressures that alternate; not in static stages, nor of linear pressures. docs/theory/host.md section 3.1.
    subroutine warn_of_oscillation(run, lines, told)

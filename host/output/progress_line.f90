@@ -4,7 +4,7 @@
 module progress_line
    use, intrinsic :: iso_fortran_env, only: output_unit
    use faults, only: fault_t
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, TAKEN_OVER, REPEATED, STAGE_ENDS
    use run_state, only: run_t
    use wall_clock, only: clock
    use kinds, only: wp
@@ -23,19 +23,39 @@ module progress_line
       real(wp) :: begun = 0.0_wp            !< When its first step ended that was seen, on the wall clock [s].
       real(wp) :: from = 0.0_wp             !< Time of the run at the end of that step [s].
    contains
-      procedure :: taken_over
-      procedure :: repeated
-      procedure :: stage_ends
+      procedure :: hear
    end type progress_observer_t
 contains
-   !> Shows the step, the share of the stage and the time that the stage takes yet if it goes on as so far.
-   subroutine taken_over(self, run, fault)
+   !> Shows steps, attempts that are not accepted, as often as steps, and empties the line at the end of a stage, so
+   !> that another can be written.
+   subroutine hear(self, event, run, fault)
       class(progress_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp) :: now
 
       if (.not. to_terminal()) return
+      select case (event)
+      case (TAKEN_OVER)
+         call show_step(self, run)
+      case (REPEATED)
+         if (clock() - self%last_line < PERIOD) return
+         self%last_line = clock()
+         call write_line('Stage '//trim(run%stage%name)//', time '//short(run%state%time)// &
+                         ' s: a step of '//short(run%scheme%dt)//' s is repeated, cuts '//whole(run%cuts), self)
+      case (STAGE_ENDS)
+         if (self%standing > 0) write (output_unit, '(a)', advance='no') &
+            achar(13)//repeat(' ', self%standing)//achar(13)
+         self%standing = 0
+      end select
+   end subroutine hear
+
+   !> Shows the step, the share of the stage and the time that the stage takes yet if it goes on as so far.
+   subroutine show_step(self, run)
+      class(progress_observer_t), intent(inout) :: self
+      type(run_t), intent(inout) :: run
+      real(wp) :: now
+
       now = clock()
       if (self%stage /= run%at%stage) then
          ! The first step has no pace yet.
@@ -50,30 +70,7 @@ contains
                *(at%t_start + duration - time)/(time - self%from))//' left for this stage', self)
          end associate
       end if
-   end subroutine taken_over
-
-   !> Shows an attempt that is not accepted, as often as that.
-   subroutine repeated(self, run, fault)
-      class(progress_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (.not. to_terminal()) return
-      if (clock() - self%last_line < PERIOD) return
-      self%last_line = clock()
-      call write_line('Stage '//trim(run%stage%name)//', time '//short(run%state%time)// &
-                      ' s: a step of '//short(run%scheme%dt)//' s is repeated, cuts '//whole(run%cuts), self)
-   end subroutine repeated
-
-   !> Empties the line on the terminal, so that another can be written.
-   subroutine stage_ends(self, run, fault)
-      class(progress_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (self%standing > 0) write (output_unit, '(a)', advance='no') achar(13)//repeat(' ', self%standing)//achar(13)
-      self%standing = 0
-   end subroutine stage_ends
+   end subroutine show_step
 
    !> A line in the place of the one before, as long as the terminal is wide: one that wraps could not be taken back.
    subroutine write_line(text, progress)

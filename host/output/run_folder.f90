@@ -8,7 +8,7 @@ module run_folder
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use field_files, only: check_mesh
    use files, only: make_folder
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, FITS, BEGINS, ENDS
    use run_state, only: run_t
    use scene_parts, only: FINGERPRINT_LENGTH
    use texts, only: from_c, whole
@@ -21,9 +21,7 @@ module run_folder
       logical :: taken = .false.                     !< The file LOCK is ours.
    contains
       procedure :: exchange
-      procedure :: fits
-      procedure :: begins
-      procedure :: ends
+      procedure :: hear
    end type folder_observer_t
    character(*), parameter :: LOCK = 'running'
    integer, parameter :: ATTEMPTS = 2   !< The second after the file of a dead process is removed.
@@ -56,34 +54,27 @@ contains
       call archive%exchange('origin', self%origin)
    end subroutine exchange
 
-   !> Refuses a folder that does not hold the run. Fault EXIT_RESTART: its mesh is of another scene.
-   subroutine fits(self, run, fault)
+   !> Takes the folder, which a new run makes, and gives it free. Faults: EXIT_RESTART where it does not hold the run:
+   !> its mesh is of another scene; EXIT_OUTPUT: another run writes to it.
+   subroutine hear(self, event, run, fault)
       class(folder_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      call check_mesh(self%folder, self%origin, fault)
-   end subroutine fits
-
-   !> Takes the folder, which a new run makes. Fault EXIT_OUTPUT: another run writes to it.
-   subroutine begins(self, run, fault)
-      class(folder_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (run%steps == 0) self%origin = run%model%origin%fingerprint
-      if (run%steps == 0) call make_folder(self%folder)
-      call lock_folder(self%folder, self%taken, fault)
-   end subroutine begins
-
-   !> Gives the folder free.
-   subroutine ends(self, run, fault)
-      class(folder_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (self%taken) call remove_lock(self%folder)
-   end subroutine ends
+      select case (event)
+      case (FITS)
+         call check_mesh(self%folder, self%origin, fault)
+      case (BEGINS)
+         if (run%steps == 0) then
+            self%origin = run%model%origin%fingerprint
+            call make_folder(self%folder)
+         end if
+         call lock_folder(self%folder, self%taken, fault)
+      case (ENDS)
+         if (self%taken) call remove_lock(self%folder)
+      end select
+   end subroutine hear
 
    !> Takes a folder; nothing is done where there is none. Fault EXIT_OUTPUT: another run writes to it.
    subroutine lock_folder(folder, taken, fault)

@@ -11,7 +11,7 @@ module run_summary
    use named_points, only: unknowns_at
    use porous_domain, only: UNDRAINED
    use run_cost, only: print_cost
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
@@ -36,10 +36,7 @@ module run_summary
       type(peaks_t) :: peaks             !< Peaks at the named points.
    contains
       procedure :: exchange
-      procedure :: begins
-      procedure :: taken_over
-      procedure :: stage_ends
-      procedure :: ends
+      procedure :: hear
    end type summary_observer_t
 contains
    !> Exchanges the largest values so far.
@@ -53,23 +50,37 @@ contains
       call archive%exchange_allocatable('peaks_dt', self%peaks%dt, 's', 'steps that led to these values')
    end subroutine exchange
 
-   !> Peaks before the first step are zero.
-   subroutine begins(self, run, fault)
+   !> Notes the largest values, which are zero before the first step, and says how a stage went that has come to its
+   !> end, what came of the run, and what it has cost.
+   subroutine hear(self, event, run, fault)
       class(summary_observer_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (run%steps > 0) return
-      associate (peaks => self%peaks, points => size(run%model%output%points))
-         allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
-      end associate
-   end subroutine begins
+      select case (event)
+      case (BEGINS)
+         if (run%steps > 0) return
+         associate (peaks => self%peaks, points => size(run%model%output%points))
+            allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
+         end associate
+      case (TAKEN_OVER)
+         call note_peaks(self, run)
+      case (STAGE_ENDS)
+         if (run%news%complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//trim(run%stage%name)// &
+            ': '//counted(run%at%step, 'step')//', time '//short(run%state%time)//' s, '// &
+            counted(run%iterations, 'linear solve')//' and '//counted(run%cuts, 'cut')//' so far.'
+      case (ENDS)
+         if (run%steps == 0) return
+         if (.not. self%quiet) call print_summary(output_unit, run, self%peaks)
+         if (self%verbose) call print_cost(output_unit, run, clock() - self%started)
+      end select
+   end subroutine hear
 
    !> Notes the largest values.
-   subroutine taken_over(self, run, fault)
+   subroutine note_peaks(self, run)
       class(summary_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
       real(wp) :: x(FIELDS)
       integer :: i, f
 
@@ -82,30 +93,7 @@ contains
             self%peaks%dt(f, i) = run%scheme%dt
          end do
       end do
-   end subroutine taken_over
-
-   !> Says how a stage went that has come to its end.
-   subroutine stage_ends(self, run, fault)
-      class(summary_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (run%news%complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '// &
-         trim(run%stage%name)//': '//counted(run%at%step, 'step')//', time '// &
-         short(run%state%time)//' s, '//counted(run%iterations, 'linear solve')//' and '// &
-         counted(run%cuts, 'cut')//' so far.'
-   end subroutine stage_ends
-
-   !> Says what came of the run, and what it has cost.
-   subroutine ends(self, run, fault)
-      class(summary_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (run%steps == 0) return
-      if (.not. self%quiet) call print_summary(output_unit, run, self%peaks)
-      if (self%verbose) call print_cost(output_unit, run, clock() - self%started)
-   end subroutine ends
+   end subroutine note_peaks
 
    !> The summary; nothing of answers that no step has changed, of steps where all are given.
    subroutine print_summary(unit, run, peaks)

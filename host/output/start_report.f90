@@ -8,7 +8,7 @@ module start_report
    use generalised_alpha, only: has_rates, has_inertia
    use start_findings, only: balance_t
    use run_cost, only: size_of_run
-   use run_observer, only: observers_t, FITS
+   use run_observer, only: observers_t, FITS, STAGE_BEGINS
    use run_state, only: run_t, enter_stage
    use scene_types, only: scene_t
    use scene_warnings, only: warn_of_scene
@@ -36,7 +36,7 @@ contains
       call warn_of_scene(scene, run%model, run%tension, balance)
       if (.not. only_check) return
       call enter_stage(run, 1)
-      call contacts%stage_begins(run, none)
+      call contacts%hear(STAGE_BEGINS, run, none)
    end subroutine report_start
 
    !> Says what is going to run.

@@ -9,7 +9,7 @@ module water_balance
    use faults, only: fault_t
    use kinds, only: wp
    use porous_domain, only: domain_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
-   use run_observer, only: observer_t
+   use run_observer, only: observer_t, STEP, STAGE_ENDS
    use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
@@ -37,8 +37,7 @@ module water_balance
       type(water_t) :: water
    contains
       procedure :: exchange
-      procedure :: step
-      procedure :: stage_ends
+      procedure :: hear
    end type water_alarm_t
 contains
    !> Exchanges the water of the stage so far.
@@ -55,11 +54,21 @@ contains
       end associate
    end subroutine exchange
 
-   !> Books the water of a step.
-   subroutine step(self, run, fault)
+   !> Books every step, and looks at what a stage has lost or made at its end.
+   subroutine hear(self, event, run, fault)
       class(water_alarm_t), intent(inout) :: self
+      integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
+
+      if (event == STEP) call book(self, run)
+      if (event == STAGE_ENDS) call look_at_missing(self, run)
+   end subroutine hear
+
+   !> Books the water of a step.
+   subroutine book(self, run)
+      class(water_alarm_t), intent(inout) :: self
+      type(run_t), intent(inout) :: run
       integer :: e
 
       if (.not. run%scheme%has_rates .or. .not. run%model%domain%with_w) return
@@ -69,14 +78,13 @@ contains
                                                 [COUPLED, UNDRAINED])) &
             call book_storage(run%model%domain, e, run, self%water)
       end do
-   end subroutine step
+   end subroutine book
 
    !> Warns at the end of a stage of the water that is missing or made; not where the scene leaves a part of the rate of
    !> saturation out.
-   subroutine stage_ends(self, run, fault)
+   subroutine look_at_missing(self, run)
       class(water_alarm_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
       character(:), allocatable :: of_what
       real(wp) :: missing
 
@@ -92,7 +100,7 @@ contains
          end if
       end associate
       self%water = water_t()
-   end subroutine stage_ends
+   end subroutine look_at_missing
 
    !> Adds what the pores of an element take up in a step: by their volume, their saturation and the pressure of the
    !> water.

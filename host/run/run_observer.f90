@@ -13,31 +13,41 @@ module run_observer
    public :: observer_t, observers_t, slot_t
    public :: FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, ENDS
 
-   !> Events that observers are told, each by the procedure of its name.
-   integer, parameter :: FITS = 1, BEGINS = 2, STAGE_BEGINS = 3, STEP = 4, TAKEN_OVER = 5, REPEATED = 6, &
-                         STAGE_ENDS = 7, ENDS = 8
+   ! Events that observers are told.
+   integer, parameter :: FITS = 1           !< Before a restart: refuse what your files do not fit.
+   integer, parameter :: BEGINS = 2         !< Before the first step; run%steps > 0 in a restart.
+   integer, parameter :: STAGE_BEGINS = 3   !< Before the stage run%at%stage is prepared; its contacts act.
+   integer, parameter :: STEP = 4           !< After an accepted step: run%state before it, run%next after it. A fault
+                                            !< ends the run once all have seen the step taken over.
+   integer, parameter :: TAKEN_OVER = 5     !< Afterwards: run%state after it.
+   integer, parameter :: REPEATED = 6       !< After an attempt that is not accepted.
+   integer, parameter :: STAGE_ENDS = 7     !< Also where a fault has ended the run within the stage.
+   integer, parameter :: ENDS = 8           !< After the last step, also where the run has failed.
    !> The first fault keeps those that follow from hearing of it: after a row that cannot be written there is no
    !> checkpoint.
    integer, parameter :: UP_TO_A_FAULT(*) = [FITS, BEGINS, TAKEN_OVER]
    integer, parameter :: TIMED(*) = [BEGINS, TAKEN_OVER, STAGE_ENDS]   !< Events whose time is that of output.
 
-   !> All procedures do nothing unless an observer has its own. A fault ends the run. Contacts of the run may be probed;
-   !> otherwise an observer leaves the run as it is, but for the factors and slopes that a checkpoint makes it forget.
+   !> A fault ends the run. Contacts of the run may be probed; otherwise an observer leaves the run as it is, but for
+   !> the factors and slopes that a checkpoint makes it forget.
    type, abstract :: observer_t
       character(:), allocatable :: folder   !< Folder of the results; not allocated: no file is written.
       type(slot_t), pointer :: earlier(:) => null()   !< Observers before it in the list, for a checkpoint.
    contains
-      procedure :: exchange                   !< With a checkpoint.
-      procedure :: fits => unheard            !< Before a restart; refuses what its files do not fit.
-      procedure :: begins => unheard          !< Before the first step; run%steps > 0 in a restart.
-      procedure :: stage_begins => unheard    !< Before the stage run%at%stage is prepared; its contacts act.
-      procedure :: step => unheard            !< After an accepted step: run%state before it, run%next after it. A fault
-                                              !< ends the run once all have seen the step taken over.
-      procedure :: taken_over => unheard      !< Afterwards: run%state after it.
-      procedure :: repeated => unheard        !< After an attempt that is not accepted.
-      procedure :: stage_ends => unheard      !< Also where a fault has ended the run within it.
-      procedure :: ends => unheard            !< After the last step, also where the run has failed.
+      procedure :: exchange                 !< With a checkpoint; nothing unless an observer has its own.
+      procedure(hear_i), deferred :: hear
    end type observer_t
+
+   abstract interface
+      !> Does what the observer has to do at an event. Faults are those of the observer.
+      subroutine hear_i(self, event, run, fault)
+         import :: observer_t, run_t, fault_t
+         class(observer_t), intent(inout) :: self
+         integer, intent(in) :: event
+         type(run_t), intent(inout) :: run
+         type(fault_t), intent(inout) :: fault
+      end subroutine hear_i
+   end interface
 
    !> A place of the list.
    type :: slot_t
@@ -59,13 +69,6 @@ contains
       class(observer_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
    end subroutine exchange
-
-   !> Does nothing at an event. Faults of an observer's own procedure are those of the observer.
-   subroutine unheard(self, run, fault)
-      class(observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-   end subroutine unheard
 
    !> Puts an observer at the end of the list.
    subroutine add(self, observer)
@@ -102,36 +105,10 @@ contains
          k = merge(self%begun + 1 - i, i, event == ENDS)
          one = fault_t()
          self%list(k)%observer%earlier => self%list(:k - 1)
-         call hear(self%list(k)%observer, event, run, one)
+         call self%list(k)%observer%hear(event, run, one)
          if (fault%code == 0) fault = one
          if (event == BEGINS .and. fault%code == 0) self%begun = k
       end do
       if (any(event == TIMED)) call add_elapsed(run%seconds_output, t0)
    end subroutine tell
-
-   subroutine hear(observer, event, run, fault)
-      class(observer_t), intent(inout) :: observer
-      integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      select case (event)
-      case (FITS)
-         call observer%fits(run, fault)
-      case (BEGINS)
-         call observer%begins(run, fault)
-      case (STAGE_BEGINS)
-         call observer%stage_begins(run, fault)
-      case (STEP)
-         call observer%step(run, fault)
-      case (TAKEN_OVER)
-         call observer%taken_over(run, fault)
-      case (REPEATED)
-         call observer%repeated(run, fault)
-      case (STAGE_ENDS)
-         call observer%stage_ends(run, fault)
-      case (ENDS)
-         call observer%ends(run, fault)
-      end select
-   end subroutine hear
 end module run_observer

@@ -177,16 +177,9 @@ contains
          if (index('twT', key%kind) > 0) value = ''''//value//''''
          meaning = trim(key%meaning)
          if (key%words /= '') meaning = trim(key%words)//': '//meaning
-         write (unit, '(a,a,a)') merge('     ', '   ! ', key%preset == REQUIRED), &
-            padded(trim(key%name)//' = '//value, 34), '! '//meaning
+         value = trim(key%name)//' = '//value
+         write (unit, '(4a)') merge('     ', '   ! ', key%preset == REQUIRED), value, &
+            repeat(' ', max(1, 34 - len(value))), '! '//meaning
       end subroutine print_key
-
-      pure function padded(text, width) result(wide)
-         character(*), intent(in) :: text
-         integer, intent(in) :: width
-         character(:), allocatable :: wide
-
-         wide = text//repeat(' ', max(1, width - len(text)))
-      end function padded
    end subroutine print_template
 end module scene_keys

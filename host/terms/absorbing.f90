@@ -92,6 +92,7 @@ contains
       model%actions = [model%actions, side%action_t]
       if (.not. allocated(self%sides)) allocate (self%sides(0))
       self%sides = [self%sides, side]
+      self%wanted = .true.
    end subroutine build_group
 
    !> Dashpots of the boundaries. docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: the ground has no stiffness, or

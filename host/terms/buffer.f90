@@ -78,6 +78,7 @@ contains
          trim(one%upper)//'''; name the two plates that the buffer lies between.')
       if (.not. allocated(self%all)) allocate (self%all(0))
       self%all = [self%all, one]
+      self%wanted = .true.
    end subroutine build_group
 
    !> Springs between the unknowns of the plates, which meet in the matrix from now on.

@@ -23,7 +23,7 @@ module contact_drainage
       logical, allocatable :: follows(:)        !< (contacts) Whether its drainage follows its state.
       logical, allocatable :: gives_way(:, :)   !< (fixes, contacts) A pressure prescribed along edges of the slave.
    contains
-      procedure :: build_group, build, before_step
+      procedure :: build_group, before_step
    end type contact_drainage_t
 
    real(wp), parameter :: HALF = 0.5_wp*(1 - 1.0e-9_wp)   !< Up to rounding: half an edge may lie exactly opposite.
@@ -50,6 +50,7 @@ contains
       end if
       self%follows(number) = follows
       if (.not. follows) return
+      self%wanted = .true.
       if (.not. model%domain%with_w) call raise(fault, EXIT_INPUT, place_of(item_of(k%group))// &
          'drainage = ''state'' needs pressures; see fields in &scene.')
       if (fault%code /= 0) return
@@ -69,16 +70,6 @@ contains
          trim(model%contacts(number)%name)//': drainage = ''state'' releases &fix of p_w, p_c or p_a on the slave, '// &
          'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')
    end subroutine build_group
-
-   !> Raises no fault.
-   subroutine build(self, model, there, fault)
-      class(contact_drainage_t), intent(inout) :: self
-      type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there
-      type(fault_t), intent(inout) :: fault
-
-      if (there) there = any(self%follows)
-   end subroutine build
 
    !> Whether a group has all nodes of an edge of the slave: a boundary that only ends on it does not give way.
    pure logical function share_an_edge(model, slave, group) result(shared)

@@ -20,14 +20,13 @@ module drained_regions
    end type drained_regions_t
 contains
    !> Its key is one of regions, which are built before. Raises no fault.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, model, fault)
       class(drained_regions_t), intent(inout) :: self
       type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
 
-      there = any(model%domain%regions%drainage == DRAINED .or. model%domain%regions%drainage == UNDRAINED)
-      if (there) call give_pressures(model)
+      self%wanted = any(model%domain%regions%drainage == DRAINED .or. model%domain%regions%drainage == UNDRAINED)
+      if (self%wanted) call give_pressures(model)
    end subroutine build
 
    !> Pressures that are no unknowns. docs/theory/host.md section 3.5. Sets `given` of the domain [kPa].

@@ -18,7 +18,7 @@ module friction
 
    type, extends(scene_term_t) :: friction_t
    contains
-      procedure :: build_group, build, before_step, accept, exchange
+      procedure :: build_group, before_step, accept, exchange
    end type friction_t
 contains
    !> The options of a contact. Raises no fault.
@@ -36,19 +36,10 @@ contains
       call k%number('tangential_penalty', options%tangential_penalty, 0.0_wp, UNBOUNDED, &
                     'shear stress of a unit of slip before it slides [kN/m3]; 0: a tenth of the penalty', &
                     '+friction|cohesion')
-      if (.not. k%lists) model%contacts(number)%options = options
+      if (k%lists) return
+      model%contacts(number)%options = options
+      if (has_friction(options)) self%wanted = .true.
    end subroutine build_group
-
-   !> Raises no fault.
-   subroutine build(self, model, there, fault)
-      class(friction_t), intent(inout) :: self
-      type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there
-      type(fault_t), intent(inout) :: fault
-      integer :: c
-
-      there = any([(has_friction(model%contacts(c)%options), c=1, size(model%contacts))])
-   end subroutine build
 
    !> Displacements and gaps that the friction of a step starts from. Fault EXIT_CONVERGENCE: a kernel refuses them.
    subroutine before_step(self, dt, problem, fault)

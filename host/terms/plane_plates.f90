@@ -85,14 +85,12 @@ contains
 
    !> Gives supports and loads their rotation; a body with other unknowns is all that a run sees. Fault EXIT_INPUT: a
    !> rotation or moment of something else.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, model, fault)
       class(plane_plates_t), intent(inout) :: self
       type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      there = .false.
       do i = 1, size(model%fixes)
          call act_on_rotation(model%plates, .true., model%fixes(i)%acting_t, fault)
       end do

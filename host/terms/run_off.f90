@@ -46,14 +46,13 @@ contains
 
    !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
    !> pond without weight.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, model, fault)
       class(run_off_t), intent(inout) :: self
       type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      there = any(model%fixes%limits) .or. any(model%loads%kind == LOAD_RAIN)
+      self%wanted = any(model%fixes%limits) .or. any(model%loads%kind == LOAD_RAIN)
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
             if (.not. fix%limits .or. fault%code /= 0) cycle

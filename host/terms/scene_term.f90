@@ -10,6 +10,7 @@ module scene_term
 
    !> Procedures that a term leaves out do nothing.
    type, abstract, extends(term_t) :: scene_term_t
+      logical :: wanted = .false.   !< The scene asks for the term, which the model gets; set by either procedure.
    contains
       procedure :: build_group, build
    end type scene_term_t
@@ -26,10 +27,9 @@ contains
    end subroutine build_group
 
    !> After the groups. Faults: as of build_group.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, model, fault)
       class(scene_term_t), intent(inout) :: self
       type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there   !< Whether the scene has the term; before: a group that its keys may stand in.
       type(fault_t), intent(inout) :: fault
    end subroutine build
 end module scene_term

@@ -51,15 +51,14 @@ contains
 
    !> Fault EXIT_INPUT: ground that is not there from the start with a stress of its own, or the flow of a start that
    !> lacks it; a stage without ground.
-   subroutine build(self, model, there, fault)
+   subroutine build(self, model, fault)
       class(staging_t), intent(inout) :: self
       type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there
       type(fault_t), intent(inout) :: fault
       integer :: s
 
-      there = allocated(model%ground)
-      if (.not. there) return
+      self%wanted = allocated(model%ground)
+      if (.not. self%wanted) return
       if (model%subtract_flow) then
          call raise(fault, EXIT_INPUT, trim(model%origin%file)//': initial_flow = ''subtract'' of &scene keeps the '// &
                     'flow of the ground at the start, but regions join or leave (stages of &region); leave one '// &

@@ -65,6 +65,7 @@ contains
          if (change%in_region(i)) call check_law(model, change, model%domain%regions(i)%law, fault)
       end do
       self%changes = [self%changes, change]
+      self%wanted = .true.
    end subroutine build_group
 
    !> A parameter follows one history, and the ground begins with the parameter as its material has it.

@@ -107,7 +107,6 @@ contains
       type(group_t), allocatable :: groups(:)
       type(key_table_t) :: table
       type(term_box_t) :: box
-      logical :: there
       integer :: i
 
       allocate (groups, source=groups_named(scene, trim(registered%group)))
@@ -115,9 +114,8 @@ contains
          table%group = groups(i)
          if (fault%code == 0) call registered%term%build_group(table, i, model, fault)
       end do
-      there = size(groups) > 0
-      if (fault%code == 0) call registered%term%build(model, there, fault)
-      if (fault%code /= 0 .or. .not. there) return
+      if (fault%code == 0) call registered%term%build(model, fault)
+      if (fault%code /= 0 .or. .not. registered%term%wanted) return
       allocate (box%term, source=registered%term)
       model%terms = [model%terms, box]
    end subroutine build_term

@@ -18,10 +18,10 @@ module viscosity
 
    type, extends(scene_term_t) :: viscosity_t
    contains
-      procedure :: build_group, build
+      procedure :: build_group
    end type viscosity_t
 contains
-   !> What the points of a region have against the rate of strain. Raises no fault.
+   !> What the points of a region have against the rate of strain, which is all that a run sees. Raises no fault.
    subroutine build_group(self, k, number, model, fault)
       class(viscosity_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
@@ -37,13 +37,4 @@ contains
       if (eta > 0.0_wp) model%domain%regions(number)%against_rate = eta*DEVIATOR
    end subroutine build_group
 
-   !> Regions with a stress of their own are all that a run sees. Raises no fault.
-   subroutine build(self, model, there, fault)
-      class(viscosity_t), intent(inout) :: self
-      type(model_t), intent(inout) :: model
-      logical, intent(inout) :: there
-      type(fault_t), intent(inout) :: fault
-
-      there = .false.
-   end subroutine build
 end module viscosity

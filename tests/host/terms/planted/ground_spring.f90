@@ -54,6 +54,7 @@ contains
       model%actions = [model%actions, spring%action_t]
       if (.not. allocated(self%springs)) allocate (self%springs(0))
       self%springs = [self%springs, spring]
+      self%wanted = .true.
    end subroutine build_group
 
    !> An entry on the diagonal for every displacement. Raises no fault.
