@@ -51,6 +51,14 @@ module mud_batch
          sw_pc(:) => null(), s_w(:) => null()
       type(report_t), pointer, contiguous :: reports(:) => null()
    end type arrays_t
+   interface
+      !> Brings so many bytes that will soon be read or written near.
+      subroutine mud_fetch(first, bytes) bind(c, name='mud_fetch')
+         import :: c_int, c_ptr
+         type(c_ptr), value :: first
+         integer(c_int), value :: bytes
+      end subroutine mud_fetch
+   end interface
 contains
    !> Fills STATEV of points that begin. Tension positive, stress and suction in the unit of p_atm, void ratio [-].
    !> Returns the number of failed points, or a negative code where nothing was done; see run.
@@ -124,6 +132,7 @@ contains
             if (associated(arrays%material)) k(i) = arrays%material(j(i)) + 1
          end do
          done = .false.
+         if (lanes) call fetch(arrays, j(:n), min(first - 1 + WIDTH, given%n - n))
          if (lanes) call update_together(material, arrays, j(:n), k(:n), given%tangent, output, report, done)
          do i = 1, n
             raised = .false.
@@ -274,6 +283,21 @@ contains
       given = read_preset(par%suction%retention_t, preset)
       if (given > 0.0_wp) s_w = given
    end function first_saturation
+
+   !> Brings near what the points j will write, and as many behind the number `before` of the call will read.
+   subroutine fetch(arrays, j, before)
+      type(arrays_t), intent(in) :: arrays
+      integer, intent(in) :: j(:), before
+      integer :: i, next
+
+      do i = 1, size(j)
+         next = before + i
+         if (associated(arrays%list)) next = arrays%list(next) + 1
+         call mud_fetch(c_loc(arrays%statev0(1, next)), 8*size(arrays%statev0, 1))
+         call mud_fetch(c_loc(arrays%statev1(1, j(i))), 8*size(arrays%statev1, 1))
+         if (associated(arrays%c)) call mud_fetch(c_loc(arrays%c(1, 1, j(i))), 8*36)
+      end do
+   end subroutine fetch
 
    !> Increments of the points j of materials k side by side, those of a row with one material together; done tells
    !> which need no other answer.

@@ -12,3 +12,12 @@ int mud_lane_points(const void *material, const void *increments, int n, int tan
       return 0;
    return mud_lane_points_v3(material, increments, n, tangent, outputs, reports);
 }
+
+/* Brings memory that will soon be read or written near: the lanes wait for it longer than one point does. */
+void mud_fetch(const void *first, int bytes);
+
+void mud_fetch(const void *first, int bytes)
+{
+   for (int i = 0; i < bytes; i += 64)
+      __builtin_prefetch((const char *)first + i);
+}
