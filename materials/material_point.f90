@@ -10,7 +10,7 @@ module material_point
    use texts, only: short
    implicit none (type, external)
    private
-   public :: material_t, material_slot_t, response_t, batch_report_t, remark_t, state_index, swollen
+   public :: material_t, material_slot_t, response_t, batch_report_t, remark_t, retention_by_curve, state_index, swollen
    public :: lost_pressure, PRESSURE_LOST, CYCLES_UNTRUSTED, MANY_REVERSALS, range_t, untested
    public :: MOST_POINTS, MOST_ELEMENTS, MOST_GUARDS, NAME_LENGTH, DOUBT_LENGTH, WITH_TANGENT, NO_PRESET
 

@@ -10,7 +10,7 @@ module material_umat
    use key_schema, only: line_of, REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
-   use material_point, only: material_t, response_t, batch_report_t, remark_t, swollen, NAME_LENGTH
+   use material_point, only: material_t, response_t, batch_report_t, remark_t, retention_by_curve, swollen, NAME_LENGTH
    use retention_curves, only: saturation_t
    use texts, only: whole, short, LENGTH
    use umat_library, only: umat_i, load_umat, CMNAME_LENGTH
@@ -44,6 +44,7 @@ module material_umat
       integer :: void_ratio_at = 0, saturation_at = 0, saturation_slopes_at = 0, suction_slope_at = 0
    contains
       procedure :: initial_state
+      procedure :: retention
       procedure :: update
       procedure :: message
       procedure :: remarks
@@ -166,17 +167,11 @@ contains
       type(response_t) :: response
       type(batch_report_t) :: report
       type(saturation_t) :: sat
-      real(wp) :: before(self%n_state, 1), after(self%n_state, 1), at_rest(6, 1), stress0(6, 1)
+      real(wp) :: after(self%n_state, 1)
 
       text = ''
       sat = self%retention(suction, void_ratio)
-      before = 0.0_wp
-      if (self%void_ratio_at > 0) before(self%void_ratio_at, 1) = void_ratio
-      before(self%place_e, 1) = void_ratio
-      before(self%place_s_w, 1) = sat%s
-      at_rest = 0.0_wp
-      stress0(:, 1) = stress
-      call self%update(1, stress0, before, at_rest, [suction], [0.0_wp], .false., response, after, report)
+      call begin_point(self, stress, suction, void_ratio, sat%s, response, after, report)
       if (report%code /= 0) then
          call self%message(report, text)
          return
@@ -184,6 +179,42 @@ contains
       state = after(:, 1)
       stress = response%stress(:, 1)
    end subroutine initial_state
+
+   !> S_w of the curve, or that with which a UMAT that keeps its own begins a point: it knows no stress, so that any
+   !> tells it. Where the UMAT refuses that point the result is full saturation and has no meaning.
+   function retention(self, p_c, e) result(sat)
+      class(umat_t), intent(in) :: self
+      real(wp), intent(in) :: p_c, e
+      type(saturation_t) :: sat
+      type(response_t) :: response
+      type(batch_report_t) :: report
+      real(wp) :: stress(6), state(self%n_state, 1)
+
+      sat = retention_by_curve(self, p_c, e)
+      if (self%saturation_at == 0) return
+      stress = 0.0_wp
+      stress(1:3) = -max(p_c, 1.0_wp)
+      call begin_point(self, stress, p_c, e, sat%s, response, state, report)
+      if (report%code == 0) sat = saturation_t(response%s_w(1), response%dsw_dpc(1), response%dsw_dev(1)/(1 + e))
+   end function retention
+
+   !> The first call of the UMAT for a point, with zero strain.
+   subroutine begin_point(self, stress, suction, void_ratio, s_w, response, state, report)
+      class(umat_t), intent(in) :: self
+      real(wp), intent(in) :: stress(6), suction, void_ratio, s_w
+      type(response_t), intent(inout) :: response
+      real(wp), intent(inout), contiguous :: state(:, :)   !< (n_state, 1)
+      type(batch_report_t), intent(out) :: report
+      real(wp) :: before(self%n_state, 1), at_rest(6, 1)
+
+      before = 0.0_wp
+      if (self%void_ratio_at > 0) before(self%void_ratio_at, 1) = void_ratio
+      before(self%place_e, 1) = void_ratio
+      before(self%place_s_w, 1) = s_w
+      at_rest = 0.0_wp
+      call self%update(1, reshape(stress, [6, 1]), before, at_rest, [suction], [0.0_wp], .true., response, state, &
+                       report)
+   end subroutine begin_point
 
    subroutine update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
                      report)

@@ -2,8 +2,8 @@
 !> Absorbing boundaries (Lysmer & Kuhlemeyer 1969), &absorbing: dashpots of the impedances rho c_p and rho c_s of the
 !> ground behind the boundary, for pore pressures the outflow of a wave that goes on (its gradient is -1/c_p times its
 !> rate), and the force of a wave that comes in. Without keys of their own the impedances are those of the elements at
-!> the boundary in the initial state, undrained. Where a boundary begins to act, the forces that it held before stay, so
-!> that only what departs from that state leaves as a wave. docs/theory/host.md section 7.4.
+!> the boundary where it begins to act, undrained. The forces that it held before stay, so that only what departs from
+!> that state leaves as a wave. docs/theory/host.md section 7.4.
 module absorbing
    use acting_places, only: facing_edges, acting_stages
    use archive, only: archive_t
@@ -38,6 +38,10 @@ module absorbing
       real(wp) :: rho = 0.0_wp, c_p = 0.0_wp, c_s = 0.0_wp   !< Of the ground behind; 0: those of the soil.
       real(wp) :: velocity(2) = 0.0_wp           !< Of the incoming wave at a factor of 1 [m/s].
       integer :: dashpots = 0                    !< Place of its dashpots in the constraint.
+      integer, allocatable :: edges(:, :)        !< (3, edges) Nodes.
+      !> Of the ground behind the edges, 0 before the boundary has acted: impedances rho c_p, rho c_s [kPa s/m], outflow
+      !> of water and air over the rate of the pressure, k/(eta c_p) [m/kPa]. (4, edges)
+      real(wp), allocatable :: behind(:, :)
       logical, allocatable :: held(:)            !< (unknowns) Displacements of the boundary.
       real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
    end type side_t
@@ -49,11 +53,7 @@ module absorbing
       procedure :: build_group, begin_run, begin_stage, before_step, exchange
    end type absorbing_t
 
-   !> The ground behind an edge.
-   type :: behind_t
-      real(wp) :: normal = 0.0_wp, shear = 0.0_wp   !< Impedances rho c_p, rho c_s [kPa s/m].
-      real(wp) :: water = 0.0_wp, air = 0.0_wp      !< Outflow over the rate of the pressure, k/(eta c_p) [m/(kPa)].
-   end type behind_t
+   integer, parameter :: AT_NORMAL = 1, AT_SHEAR = 2, AT_WATER = 3, AT_AIR = 4   !< Places in `behind`.
 contains
    !> A boundary. Fault EXIT_GROUP: a boundary or history that is not defined, or a group without edges.
    subroutine build_group(self, k, number, model, fault)
@@ -95,50 +95,55 @@ contains
       self%wanted = .true.
    end subroutine build_group
 
-   !> Dashpots of the boundaries. docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: the ground has no stiffness, or
-   !> its material refuses.
+   !> Room for the dashpots of the boundaries, and the unknowns that they hold.
    subroutine begin_run(self, problem, fault)
       class(absorbing_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
-      type(linear_forces_t) :: dashpots
-      integer :: i
+      type(linear_forces_t) :: none
+      integer :: i, e, f
 
+      if (fault%code /= 0) return
+      allocate (none%row(0), none%column(0), none%value(0))
       do i = 1, size(self%sides)
-         if (fault%code /= 0) return
-         call prepare_side(problem%model, self%sides(i), problem%state, dashpots, fault)
-         problem%constraint%linear = [problem%constraint%linear, dashpots]
-         self%sides(i)%dashpots = size(problem%constraint%linear)
+         associate (side => self%sides(i))
+            problem%constraint%linear = [problem%constraint%linear, none]
+            side%dashpots = size(problem%constraint%linear)
+            side%edges = facing_edges(problem%model, side%group, acting_stages(problem%model, side%action_t))
+            allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
+            allocate (side%held(problem%model%dofs%n), source=.false.)
+            allocate (side%incoming(problem%model%dofs%n), source=0.0_wp)
+            do e = 1, size(side%edges, 2)
+               do f = 1, DISPLACEMENTS
+                  associate (unknowns => problem%model%dofs%of(f, side%edges(:, e)))
+                     side%held(pack(unknowns, unknowns > 0)) = .true.
+                  end associate
+               end do
+            end do
+         end associate
       end do
    end subroutine begin_run
 
-   subroutine prepare_side(model, side, state, one, fault)
+   !> Dashpots of a boundary of the ground behind it. docs/theory/host.md section 7.4.
+   subroutine make_dashpots(model, side, dashpots)
       type(model_t), intent(in) :: model
       type(side_t), intent(inout) :: side
-      type(model_state_t), intent(in) :: state
-      type(linear_forces_t), intent(out) :: one
-      type(fault_t), intent(inout) :: fault
-      type(behind_t) :: ground
-      integer, allocatable :: edges(:, :)
+      type(linear_forces_t), intent(inout) :: dashpots
       integer :: e, k, f
 
-      allocate (one%row(0), one%column(0), one%value(0))
-      allocate (side%held(model%dofs%n), source=.false.)
-      allocate (side%incoming(model%dofs%n), source=0.0_wp)
-      edges = facing_edges(model, side%group, acting_stages(model, side%action_t))
-      do e = 1, size(edges, 2)
-         call ground_behind(model, side, edges(:, e), state, ground, fault)
-         if (fault%code /= 0) return
-         call add_edge(model, edges(:, e), ground, one)
+      deallocate (dashpots%row, dashpots%column, dashpots%value)
+      allocate (dashpots%row(0), dashpots%column(0), dashpots%value(0))
+      do e = 1, size(side%edges, 2)
+         call add_edge(model, side%edges(:, e), side%behind(:, e), dashpots)
       end do
-      do k = 1, size(one%row)
-         f = model%dofs%field(one%column(k))
-         if (f > DISPLACEMENTS) cycle
-         side%held(one%row(k)) = .true.
+      side%incoming = 0.0_wp
+      do k = 1, size(dashpots%row)
+         f = model%dofs%field(dashpots%column(k))
          ! The wave that comes in doubles at a rigid wall: its force is twice its impedance.
-         side%incoming(one%row(k)) = side%incoming(one%row(k)) + 2*one%value(k)*side%velocity(f)
+         if (f <= DISPLACEMENTS) side%incoming(dashpots%row(k)) = side%incoming(dashpots%row(k)) &
+                                                                  + 2*dashpots%value(k)*side%velocity(f)
       end do
-   end subroutine prepare_side
+   end subroutine make_dashpots
 
    !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points.
    subroutine ground_behind(model, side, edge, state, ground, fault)
@@ -146,13 +151,14 @@ contains
       type(side_t), intent(in) :: side
       integer, intent(in) :: edge(3)
       type(model_state_t), intent(in) :: state
-      type(behind_t), intent(out) :: ground
+      real(wp), intent(out) :: ground(4)
       type(fault_t), intent(inout) :: fault
       real(wp) :: rho, c_p, c_s, modulus, shear, s, slope
       type(relative_t) :: rel
       logical :: with_pores, with_flow
       integer :: e, i
 
+      ground = 0.0_wp
       ! The triangle on its left: of two that share it the other may be no ground.
       e = findloc([(any(model%domain%mesh%t6(4:6, i) == edge(3) .and. model%domain%mesh%t6(1:3, i) == edge(1)), &
                     i=1, size(model%domain%mesh%t6, 2))], .true., dim=1)
@@ -168,19 +174,19 @@ contains
       c_s = side%c_s
       if ((.not. c_p > 0.0_wp .and. .not. modulus > 0.0_wp) .or. (.not. c_s > 0.0_wp .and. .not. shear > 0.0_wp)) then
          call raise(fault, EXIT_MATERIAL, place_of(side)//'element '//whole(e)//' at the boundary has no '// &
-                    'stiffness in the initial state (shear modulus '//short(shear)//' kPa); give c_p and c_s.')
+                    'stiffness where it begins to act (shear modulus '//short(shear)//' kPa); give c_p and c_s.')
          return
       end if
       if (.not. c_p > 0.0_wp) c_p = sqrt(modulus/rho)
       if (.not. c_s > 0.0_wp) c_s = sqrt(shear/rho)
-      ground%normal = rho*c_p
-      ground%shear = rho*c_s
+      ground(AT_NORMAL) = rho*c_p
+      ground(AT_SHEAR) = rho*c_s
       if (.not. with_flow) return
       associate (law => model%domain%permeabilities(model%domain%regions(model%domain%region_of(e))%permeability), &
                  f => model%domain%fluids)
          rel = relative_permeability(law, s)
-         ground%water = law%intrinsic*rel%w/(f%eta_w*c_p)
-         if (model%domain%with_c) ground%air = law%intrinsic*rel%a/(f%eta_a*c_p)
+         ground(AT_WATER) = law%intrinsic*rel%w/(f%eta_w*c_p)
+         if (model%domain%with_c) ground(AT_AIR) = law%intrinsic*rel%a/(f%eta_a*c_p)
       end associate
    end subroutine ground_behind
 
@@ -217,7 +223,7 @@ contains
                                 0*suction, .true., response, after, report)
          if (report%code /= 0) then
             call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary '// &
-                       'refuses the initial state.')
+                       'refuses its own state.')
             return
          end if
          modulus = sum(response%dsig_deps(1, 1, :m%rule) + response%dsig_deps(2, 2, :m%rule))/(2*m%rule)
@@ -259,7 +265,7 @@ contains
    subroutine add_edge(model, edge, ground, one)
       type(model_t), intent(in) :: model
       integer, intent(in) :: edge(3)
-      type(behind_t), intent(in) :: ground
+      real(wp), intent(in) :: ground(4)   !< As `behind`.
       type(linear_forces_t), intent(inout) :: one
       type(edge_point_t) :: points(PER_EDGE)
       real(wp) :: normal(2), block(2, 2), c(2, 2, 3, 3), h(3, 3)
@@ -273,7 +279,8 @@ contains
             normal = [tangent(2), -tangent(1)]/norm2(tangent)
             do b = 1, 2
                do a = 1, 2
-                  block(a, b) = (ground%normal - ground%shear)*normal(a)*normal(b) + merge(ground%shear, 0.0_wp, a == b)
+                  block(a, b) = (ground(AT_NORMAL) - ground(AT_SHEAR))*normal(a)*normal(b) &
+                                + merge(ground(AT_SHEAR), 0.0_wp, a == b)
                end do
             end do
             do j = 1, 3
@@ -292,10 +299,10 @@ contains
                      call add(of(a, edge(i)), of(b, edge(j)), c(a, b, i, j))
                   end do
                end do
-               call add(of(AT_P_W, edge(i)), of(AT_P_W, edge(j)), (ground%water + ground%air)*h(i, j))
-               call add(of(AT_P_W, edge(i)), of(AT_P_C, edge(j)), ground%air*h(i, j))
-               call add(of(AT_P_C, edge(i)), of(AT_P_W, edge(j)), ground%air*h(i, j))
-               call add(of(AT_P_C, edge(i)), of(AT_P_C, edge(j)), ground%air*h(i, j))
+               call add(of(AT_P_W, edge(i)), of(AT_P_W, edge(j)), (ground(AT_WATER) + ground(AT_AIR))*h(i, j))
+               call add(of(AT_P_W, edge(i)), of(AT_P_C, edge(j)), ground(AT_AIR)*h(i, j))
+               call add(of(AT_P_C, edge(i)), of(AT_P_W, edge(j)), ground(AT_AIR)*h(i, j))
+               call add(of(AT_P_C, edge(i)), of(AT_P_C, edge(j)), ground(AT_AIR)*h(i, j))
             end do
          end do
       end associate
@@ -311,7 +318,7 @@ contains
       end subroutine add
    end subroutine add_edge
 
-   !> Sides that no longer act are freed of the forces that they held.
+   !> Dashpots of what has acted, also before a restart. Sides that no longer act are freed of what they held.
    subroutine begin_stage(self, begins, problem, fault)
       class(absorbing_t), intent(inout) :: self
       logical, intent(in) :: begins
@@ -319,6 +326,10 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
+      if (fault%code /= 0) return
+      do i = 1, size(self%sides)
+         call make_dashpots(problem%model, self%sides(i), problem%constraint%linear(self%sides(i)%dashpots))
+      end do
       self%at_start = begins
       if (.not. begins) return
       do i = 1, size(self%sides)
@@ -362,20 +373,31 @@ contains
       if (number > 0) acts = any(acting_stages(model, side%action_t) == model%stages(number)%name)
    end function acts
 
-   !> Sets the forces on sides that act in a stage and did not in the one before. docs/theory/host.md section 7.4. Fault
-   !> EXIT_MATERIAL: a material refuses its own state at rest.
+   !> Sets the dashpots of sides that act in a stage and did not in the one before, and the forces on them.
+   !> docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: the ground has no stiffness, or its material refuses its own
+   !> state at rest.
    subroutine hold_ground(self, problem, fault)
-      class(absorbing_t), intent(in) :: self
+      class(absorbing_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       logical :: begin_to_act(size(self%sides))
       real(wp), allocatable :: missing(:)
-      integer :: i
+      integer :: i, e
 
       associate (number => problem%at%stage)
          begin_to_act = [(acts(self%sides(i), problem%model, number) .and. &
                           .not. acts(self%sides(i), problem%model, number - 1), i=1, size(begin_to_act))]
          if (.not. any(begin_to_act)) return
+         do i = 1, size(self%sides)
+            if (.not. begin_to_act(i)) cycle
+            associate (side => self%sides(i))
+               do e = 1, size(side%edges, 2)
+                  call ground_behind(problem%model, side, side%edges(:, e), problem%state, side%behind(:, e), fault)
+                  if (fault%code /= 0) return
+               end do
+               call make_dashpots(problem%model, side, problem%constraint%linear(side%dashpots))
+            end associate
+         end do
          call copy_state(problem%state, problem%next)
          problem%next%v = 0.0_wp
          problem%next%a = 0.0_wp
@@ -399,8 +421,13 @@ contains
       class(absorbing_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
       class(archive_t), intent(inout) :: archive
+      integer :: i
 
       call archive%exchange('offset', problem%constraint%offset, 'kN, m3/s', &
                             'flow that is subtracted, forces that hold the ground')
+      do i = 1, size(self%sides)
+         call archive%exchange('behind_'//whole(i), self%sides(i)%behind, 'kPa s/m, m/kPa', &
+                               'impedances of the ground behind an absorbing boundary, outflow over rate of pressure')
+      end do
    end subroutine exchange
 end module absorbing

@@ -76,6 +76,25 @@ def test_both_run():
         for file in files:
             check(f"{name}: MUD as a UMAT is MUD, digit by digit, in {file}", cells(left / file) == cells(right / file))
 
+    # The start asks for S_w before the UMAT has begun a point: for the weight above it and the part of suction.
+    text = """&scene name = 'start' fields = 'u-p_w-p_c' gravity = 9.81 /
+&mesh r = 0, 1 r_cells = 1 z = -2, 0 z_cells = 2 /
+LAW&permeability name = 'k' intrinsic = 1e-12 /
+&region material = 'sand' retention = 'material' permeability = 'k' void_ratio = 0.7 /
+&initial stress = 'geostatic' surface = 0 water_table = -4 surcharge = 20 /
+&stage name = 'wet' analysis = 'quasi_static' duration = 100 dt = 50 tolerance = 1e-6 /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 20 /
+&load group = 'top' kind = 'rain' value = 1e-7 /
+&point name = 'mid' r = 0.5 z = -1 /
+"""
+    (one, left), (other, right) = (run(text.replace("LAW", law), f"start_{n}") for n, law in (("own", own),
+                                                                                              ("foreign", foreign)))
+    check("start: both run", one.returncode == other.returncode == 0, one.stderr + other.stderr)
+    for file in ("histories.csv", "ledger.csv", "points_wet.csv"):
+        check(f"start: MUD as a UMAT is MUD, digit by digit, in {file}", cells(left / file) == cells(right / file))
+
     # One void ratio and one degree of saturation a point: what the host computes with is what the law keeps.
     text = (root / "tests/host/scenes/restart.nml").read_text()
     done, folder = run(re.sub(r"&mud\n.*?^/\n", lambda _: own, text, flags=re.S | re.M), "one_value")
