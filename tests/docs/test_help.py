@@ -13,7 +13,7 @@ PROGRAMS = [build / name for name in ("drivers/mud_triax", "drivers/mud_describe
 # Started by these words; what the build or a test alone starts is not here.
 PYTHON = ["drivers/plot_case.py", "host/plot_run.py", "calibration/library.py", "scripts/single_source.py",
           "scripts/same_answers.py", "scripts/same_increments.py", "scripts/run_suites.py", "scripts/module_map.py",
-          "benchmarks/host_benchmark.py", "tests/mutations/run_mutations.py"]
+          "benchmarks/host_benchmark.py", "benchmarks/host_lanes.py", "tests/mutations/run_mutations.py"]
 SHELL = ["demo", "check", "scripts/site", "scripts/benchmark", "scripts/random_increments", "scripts/try_packages.sh",
          "scripts/before_release", "scripts/try_fpm", "scripts/try_recipes", "scripts/wheel",
          "clients/check", "verification/run", "tests/fuzz/run"]

@@ -72,9 +72,10 @@ def test_lanes_that_no_material_has_are_told():
 def test_the_first_point_that_fails_is_told_wherever_it_stands_in_its_batch():
     # Elements and points as a program tells that updates one element after another. A strain beyond 1 is told before
     # any law is asked.
-    for value, place in ((1, "element 44, point 5, refuses"), (2, "element 11, point 1, refuses"),
-                         (3, "element 1, point 2, is strained")):
+    for value, keys, place in ((1, "", "element 44, point 5, refuses"),
+                               (1, "lanes = 'yes'", "element 44, point 5, refuses"),
+                               (2, "threads = 2", "element 11, point 1, refuses"),
+                               (3, "", "element 1, point 2, is strained")):
         text = PUSHED.replace("value = -0.002", f"value = -{value}").replace("dt = 0.2", "dt = 0.4")
-        for keys in ((), ("threads = 2",), ("lanes = 'yes'",)):
-            done = start("fails", with_(text, *keys))
-            check(f"{value} m, {keys}: the point is told", done.returncode > 0 and place in done.stderr, done.stderr)
+        done = start("fails", with_(text, keys))
+        check(f"{value} m, {keys}: the point is told", done.returncode > 0 and place in done.stderr, done.stderr)
