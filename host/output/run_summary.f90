@@ -7,7 +7,6 @@ module run_summary
    use faults, only: fault_t
    use kinds, only: wp
    use control_state, only: LIMITS, LIMIT_NAMES
-   use model_types, only: model_t, point_t
    use named_points, only: unknowns_at
    use porous_domain, only: UNDRAINED
    use run_cost, only: print_cost
@@ -102,15 +101,18 @@ contains
       type(peaks_t), intent(in) :: peaks
       character(:), allocatable :: text
       real(wp) :: most(2)
+      logical :: follows
       integer :: i, f
 
       most = [maxval([0.0_wp, abs(peaks%value(:DISPLACEMENTS, :))]), &
               maxval([0.0_wp, abs(peaks%value(DISPLACEMENTS + 1:, :))])]
       do i = 1, size(run%model%output%points)
-         associate (point => run%model%output%points(i))
+         associate (point => run%model%output%points(i), m => run%model%domain)
+            ! Pressures of an undrained region are no unknowns of its nodes: they follow from strains.
+            follows = m%regions(m%region_of((point%gauss - 1)/m%rule + 1))%drainage == UNDRAINED
             do f = 1, FIELDS
                if (.not. abs(peaks%value(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
-               if (all(run%model%dofs%of(f, point%nodes) == 0) .and. .not. keeps_fluids(run%model, point, f)) cycle
+               if (all(run%model%dofs%of(f, point%nodes) == 0) .and. .not. (follows .and. f > DISPLACEMENTS)) cycle
                write (unit, '(a)') trim(point%name)//'.'//trim(FIELD_NAMES(f))//' '// &
                   with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
                   with_unit(peaks%time(f, i), 's', peaks%dt(f, i))
@@ -132,18 +134,6 @@ contains
       write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '// &
          trim(run%model%origin%file)//'" measures them.'
    end subroutine print_summary
-
-   !> Whether a field is a pressure of an undrained region: it follows from the strains of its element.
-   pure logical function keeps_fluids(model, point, field)
-      type(model_t), intent(in) :: model
-      type(point_t), intent(in) :: point
-      integer, intent(in) :: field
-
-      associate (m => model%domain)
-         keeps_fluids = field > DISPLACEMENTS .and. &
-                        m%regions(m%region_of((point%gauss - 1)/m%rule + 1))%drainage == UNDRAINED
-      end associate
-   end function keeps_fluids
 
    !> A value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
    !> millionths. Of three digits, or as many as resolve a part of it.

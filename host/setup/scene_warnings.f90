@@ -66,7 +66,6 @@ contains
       call look_at_initials(model, tension)
       call warn_of_start(model, balance)
       call warn_of_boundaries(model)
-      call look_at_retentions(model)
       call warn_of_idle_keys(scene, model)
    end subroutine warn_of_scene
 
@@ -74,17 +73,16 @@ contains
    subroutine look_at_sizes(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
+      character(*), parameter :: REMEDY = ' scale = 1e-3 of &mesh reads millimetres, scale = 1 metres.'
       real(wp) :: size_of, k
       logical :: found
       integer :: i
 
       size_of = extent(model%domain%mesh)
       associate (source => model%mesh_source)
-         if (size_of > LARGE_MESH .or. size_of < SMALL_MESH) call print_warning(place_of(source)//'the mesh is '// &
-            short(size_of)//' m large; lengths are in m.'//remedy())
-         if (source%from_file .and. .not. source%scaled .and. size_of > LARGE_FILE .and. size_of <= LARGE_MESH) &
-            call print_warning(place_of(source)//'the mesh of the file is '//short(size_of)// &
-                               ' m large; lengths are in m.'//remedy())
+         if (size_of < SMALL_MESH .or. size_of > merge(LARGE_FILE, LARGE_MESH, source%from_file .and. &
+             .not. source%scaled)) call print_warning(place_of(source)//'the mesh is '//short(size_of)// &
+            ' m large; lengths are in m.'//REMEDY(:merge(len(REMEDY), 0, source%from_file)))
       end associate
       do i = 1, size(scene%as_read)
          associate (group => scene%as_read(i))
@@ -96,13 +94,6 @@ contains
                'times the permeability k [m2].')
          end associate
       end do
-   contains
-      function remedy() result(text)
-         character(:), allocatable :: text
-
-         text = ''
-         if (model%mesh_source%from_file) text = ' scale = 1e-3 of &mesh reads millimetres, scale = 1 metres.'
-      end function remedy
    end subroutine look_at_sizes
 
    !> Fluids and grains that seem to have another unit.
@@ -194,20 +185,4 @@ contains
          end associate
       end do
    end subroutine look_at_initials
-
-   !> Names of curves that are not looked up because the scene has no suction.
-   subroutine look_at_retentions(model)
-      type(model_t), intent(in) :: model
-      integer :: i
-
-      if (model%domain%with_c) return
-      do i = 1, size(model%regions)
-         associate (region => model%regions(i))
-            if (any([character(8) :: '', 'material', 'mud'] == region%retention_name)) cycle
-            if (any(model%curves%name == region%retention_name)) cycle
-            call print_warning(place_of(region)//'no &retention is named '''//trim(region%retention_name)// &
-                               '''; the scene has no suction, which would refuse it.')
-         end associate
-      end do
-   end subroutine look_at_retentions
 end module scene_warnings
