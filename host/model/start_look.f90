@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings about the start of a scene and of its stages: balance, air, water outside or held, velocities, motions,
-!> plates, pulses that are over. What they tell is allowed, but usually a mistake.
+!> displacements that are zeroed, plates, pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
    use acting_places, only: nodes_of_ground
@@ -37,6 +37,7 @@ contains
       call look_at_held_water(model)
       do i = 1, size(model%fixes)
          call look_at_motion(model, model%fixes(i))
+         call look_at_zero(model, model%fixes(i))
       end do
       do i = 1, size(model%plates)
          call look_at_plate(model, model%plates(i))
@@ -286,6 +287,27 @@ contains
          end do
       end associate
    end subroutine look_at_motion
+
+   !> A prescribed displacement that stays on beyond a stage that sets displacements to zero: it is prescribed again.
+   subroutine look_at_zero(model, fix)
+      type(model_t), intent(in) :: model
+      type(fix_t), intent(in) :: fix
+      real(wp) :: moved
+      integer :: s
+
+      if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%hold .or. fix%of_body) return
+      do s = 1, size(model%stages) - 1
+         if (.not. (model%stages(s)%zero_displacements .and. acts_in(fix%stages, model%stages(s)%name) .and. &
+                    acts_in(fix%stages, model%stages(s + 1)%name))) cycle
+         moved = factor_at(model, fix%amplitude, sum(model%stages(:s)%duration)) &
+                 *max(abs(fix%value), abs(fix%value_slope))
+         if (.not. abs(moved) > 0.0_wp) cycle
+         call print_warning(place_of(fix)//'stage '//trim(model%stages(s)%name)//' sets displacements to zero, and '// &
+            'the value of '''//trim(fix%group_name)//''' counts from there: stage '//trim(model%stages(s + 1)%name)// &
+            ' moves it by as much again. Limit this &fix to its stages, and hold = ''yes'' in one for the others.')
+         return
+      end do
+   end subroutine look_at_zero
 
    !> Slope of a history just after a time [1/s].
    pure real(wp) function slope_after(history, time) result(slope)

@@ -58,6 +58,7 @@ contains
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       type(given_t) :: one
+      integer :: i
 
       call k%text('upper', one%upper, 'name of the &plate above: a mass that falls or stands', REQUIRED)
       call k%text('lower', one%lower, 'name of the &plate below it', REQUIRED)
@@ -76,6 +77,13 @@ contains
       if (fault%code /= 0) return
       if (one%upper == one%lower) call raise(fault, EXIT_INPUT, place_of(one)//'upper and lower are both '''// &
          trim(one%upper)//'''; name the two plates that the buffer lies between.')
+      do i = 1, size(model%stages)
+         if (fault%code /= 0 .or. all(model%plates(one%plates)%group == 0)) exit
+         if (model%stages(i)%zero_displacements .and. acts_in(one%stages, model%stages(i)%name)) &
+            call raise(fault, EXIT_INPUT, place_of(one)//'stage '''//trim(model%stages(i)%name)// &
+                       ''' zeroes its displacements, also of a plate that is joined to a boundary, which would '// &
+                       'change the force of the buffer; name the stages of the buffer.')
+      end do
       if (.not. allocated(self%all)) allocate (self%all(0))
       self%all = [self%all, one]
       self%wanted = .true.

@@ -137,6 +137,13 @@ def test_what_a_buffer_cannot_lie_between_is_refused():
         check(f"the scene has {old}", old in text)
         done = start("refused", text.replace(old, new))
         check(f"{new or 'no ' + old} is refused", done.returncode in (2, 11) and words in done.stderr, done.stderr)
+    # A plate that is joined to the block goes back to zero with it, a mass of its own does not.
+    text = fall(stages="&stage name = 'rest' analysis = 'dynamic' duration = 1 dt = 1 zero_displacements = 'yes' /\n")
+    joined = text.replace("name = 'plate' r = 0, 0.1 z = 2", "name = 'plate' group = 'top'")
+    for what, told in ((text, 0), (joined, 1), (joined.replace("stiffness", "stages = 'other' stiffness"), 0)):
+        done = start("zeroed", what + "&stage name = 'other' analysis = 'dynamic' duration = 1 dt = 1 /\n", "--check")
+        check("displacements are zeroed", done.returncode == 2*told
+              and done.stderr.count("change the force of the buffer") == told, done.stderr)
 
 
 def test_a_spring_beyond_rounding_is_named_and_not_a_body_that_moves():

@@ -196,6 +196,16 @@ def test_no_doubt_no_warning():
         told = warnings(text, "--check")
         check(what, any(all(word in line for word in words) for line in told), told)
 
+    # A base that is 1 mm down when displacements are zeroed goes down once more; held, or back at 0, it does not.
+    zeroed = SCENE.replace("&stage name = 'load'", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 "
+                           "zero_displacements = 'yes' /\n&stage name = 'load'")
+    for keys, count in (("value = -0.001", 1), ("value = -0.001 history = 'h'", 1), ("hold = 'yes'", 0),
+                        ("value = -0.001 stages = 'rest' /\n&fix group = 'bottom' field = 'u_z' hold = 'yes' "
+                         "stages = 'load'", 0)):
+        told = [line for line in warnings(zeroed.replace("'bottom' field = 'u_z'", f"'bottom' field = 'u_z' {keys}"),
+                                          "--check") if "moves it by as much again" in line]
+        check(f"displacements are zeroed: {keys}", len(told) == count, told)
+
     # Water of twice the weight, whose pressure stays: without a history, or where it flows, there is no doubt.
     heavier = SCENE.replace("gravity = 9.81 /", "gravity = 9.81 gravity_history = 'g' /\n"
                             "&history name = 'g' times = 0, 1 values = 1, 2 /")
@@ -493,7 +503,7 @@ def test_ground_that_swings_more_than_twenty_times_is_told_once():
     check("nor one that dies away", told_of_cycles(SWINGING.replace("rho_s = 2.65", "rho_s = 2.65 damping = 30")) == [])
     check("nor elastic ground", told_of_cycles(SWINGING.replace("material = 'sand'", "material = 'rock'")) == [])
     machine = """&plate name = 'mass' r = 0, 0.5 z = 1 mass = 2.2 force = -33 /
-&buffer upper = 'mass' lower = 'block' stiffness = 1.8e4 tension = 'yes' /
+&buffer upper = 'mass' lower = 'block' stiffness = 1.8e4 tension = 'yes' stages = 'free' /
 &fix group = 'mass' field = 'u_z' stages = 'rest' /
 """
     on_spring = SWINGING.replace("&load group = 'top' kind = 'pressure' value = 5 stages = 'free' /\n", machine)
