@@ -56,7 +56,7 @@ def points(sand, path, size):
     return stress, statev, strain * (1 + 0.01 * (random.random((POINTS, 1)) - 0.5)), suction
 
 
-def measured(rounds):
+def measured(rounds, counts):
     """{(path, size, tangent, threads): (one by one, side by side [us], ratio)}"""
     sand = mud.Material()
     cases = {}
@@ -64,7 +64,7 @@ def measured(rounds):
         for size in SIZES:
             given = points(sand, path, size)
             for tangent in (None, "consistent"):
-                for threads in (1, 2):
+                for threads in counts:
                     cases[path, size, tangent, threads] = (given, sand.update_batch(*given, tangent), [])
     for _ in range(rounds):
         for (_, _, tangent, threads), (given, out, times) in cases.items():
@@ -85,8 +85,8 @@ def measured(rounds):
     return found
 
 
-def table(found):
-    columns = [(tangent, threads) for tangent in (None, "consistent") for threads in (1, 2)]
+def table(found, counts):
+    columns = [(tangent, threads) for tangent in (None, "consistent") for threads in counts]
     lines = ["| path, increment | " + " | ".join(f"{tangent or 'no'} tangent, {threads} thread{'s' * (threads > 1)}"
                                                 for tangent, threads in columns) + " |",
              "|---" * (1 + len(columns)) + "|"]
@@ -100,11 +100,12 @@ def table(found):
 def main():
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("--rounds", type=int, default=15, metavar="N", help="rounds (15)")
+    words.add_argument("--threads", type=int, nargs="+", default=[1, 2], help="numbers of threads (1 2); 1 on a busy machine")
     words.add_argument("--results", type=pathlib.Path, metavar="FOLDER", help="where lanes.md is written")
     given = words.parse_args()
     load = os.getloadavg()[0]
     model = [line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8") if line.startswith("model name")]
-    text = table(measured(given.rounds)) + f"\n\n{model[0]}, {len(model)} processors; load before the run {load:.1f}.\n"
+    text = table(measured(given.rounds, given.threads), given.threads) + f"\n\n{model[0]}, {len(model)} processors; load before the run {load:.1f}.\n"
     print(text)
     if given.results:
         (given.results / "lanes.md").write_text(HEAD + text, encoding="utf-8")
