@@ -313,7 +313,7 @@ static void about_itself(input_t *in, double *props, int np, const double *mater
    mud_status_text(index, text, len);
    mud_count(list);
    mud_version(text, len);
-   double state[6] = {0}, dummy[6] = {0};
+   double state[NSTATV] = {0}, dummy[6] = {0};
    mud_save_increment("/nonexistent/file", word, material, dummy, state, (int)byte_of(in), dummy, 0, 1, text, TEXT);
    mud_convert_props(props, np, number_of(in, 1000.0));
 }
