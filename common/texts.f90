@@ -8,7 +8,7 @@ module texts
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: lower_case, short, whole, read_number, from_c, text_at, word_place, mark_length, LENGTH
+   public :: lower_case, short, whole, read_number, from_c, text_at, joined, word_place, mark_length, LENGTH
 
    integer, parameter :: LENGTH = 256   !< Longest key, value or path of a text that is read.
 
@@ -44,6 +44,19 @@ contains
       mark_length = 0
       if (index(text, MARK) == 1) mark_length = len(MARK)
    end function mark_length
+
+   !> Words, without the blanks behind them, and a text between each two.
+   pure function joined(words, between) result(line)
+      character(*), intent(in) :: words(:), between
+      character(:), allocatable :: line
+      integer :: i
+
+      line = ''
+      do i = 1, size(words)
+         if (i > 1) line = line//between
+         line = line//trim(words(i))
+      end do
+   end function joined
 
    !> First place in a text of a word that no letter, digit or underscore continues, 0 if there is none; case ignored.
    pure integer function word_place(text, word)

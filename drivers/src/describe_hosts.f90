@@ -13,7 +13,7 @@ module describe_hosts
    use namelists, only: group_t
    use parameter_groups, only: read_parameters, group_of_file
    use stress_units, only: stress_unit_t, unit_named, unit_of_atmosphere, in_unit, UNIT_NAMES
-   use texts, only: whole
+   use texts, only: joined, whole
    implicit none (type, external)
    private
    public :: named_material_t, read_material, shorten, print_host, HOSTS
@@ -61,7 +61,7 @@ contains
       if (unit == '') return
       wanted = unit_named(unit)
       if (.not. wanted%factor > 0.0_wp) then
-         call raise(fault, EXIT_INPUT, 'There is no unit '//trim(unit)//'; one of '//unit_list()//'.')
+         call raise(fault, EXIT_INPUT, 'There is no unit '//trim(unit)//'; one of '//joined(UNIT_NAMES, ', ')//'.')
       else if (mud_convert_props(material%props, size(material%props), wanted%factor/material%unit%factor) /= 0) then
          call raise(fault, EXIT_INPUT, 'The library refuses the material in '//trim(unit)//'.')
       else
@@ -95,17 +95,6 @@ contains
          end if
       end do
    end subroutine shorten
-
-   !> "kPa, Pa, MPa ..."
-   pure function unit_list() result(list)
-      character(:), allocatable :: list
-      integer :: i
-
-      list = trim(UNIT_NAMES(1))
-      do i = 2, size(UNIT_NAMES)
-         list = list//', '//trim(UNIT_NAMES(i))
-      end do
-   end function unit_list
 
    !> Prints what a host reads. The word is one of HOSTS. Numbers in the unit of the material.
    subroutine print_host(host, material)

@@ -2,7 +2,7 @@
 !> Texts on request: how to call the driver, and a case file that runs unchanged.
 module triax_help
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
-   use texts, only: short
+   use texts, only: joined, short
    use faults, only: fault_t
    use key_schema, only: key_t, described
    use key_table, only: key_table_t, listing
@@ -88,15 +88,8 @@ contains
    pure function leads_text(control) result(text)
       integer, intent(in) :: control
       character(:), allocatable :: text
-      integer, allocatable :: leads(:)
-      integer :: i
 
-      allocate (leads(0))   ! or gfortran believes the assignment to read it
-      leads = leads_of(control)
-      text = trim(QUANTITIES(leads(1))%key)
-      do i = 2, size(leads)
-         text = text//' or '//trim(QUANTITIES(leads(i))%key)
-      end do
+      text = joined(QUANTITIES(leads_of(control))%key, ' or ')
       if (control == LINEAR) text = 'strain_i, stress_i and change_i of six constraints'
    end function leads_text
 

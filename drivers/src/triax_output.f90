@@ -6,7 +6,7 @@ module triax_output
    use library_tables, only: library_version
    use material_point, only: remark_t
    use faults, only: fault_t, raise, EXIT_OUTPUT
-   use texts, only: short, lower_case
+   use texts, only: joined, short, lower_case
    use triax_case, only: case_t
    use triax_columns, only: COLUMNS, columns_shown, values_of
    use triax_stage_run, only: stage_run_t
@@ -80,7 +80,7 @@ contains
       type(table_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
       type(remark_t), allocatable :: remarks(:)
-      character(:), allocatable :: names, unit
+      character(:), allocatable :: unit
       integer :: i
 
       table%unit = test%soil%law%unit
@@ -97,11 +97,7 @@ contains
       call remark(table, 'conventions', 'compression positive; stresses are effective ['//unit//'], suction and u '// &
                   '['//unit//'], strains and the rest [-]; control_error may be up to '// &
                   short(test%control_tolerance), fault)
-      names = trim(COLUMNS(table%shown(1))%name)
-      do i = 2, size(table%shown)
-         names = names//','//trim(COLUMNS(table%shown(i))%name)
-      end do
-      if (.not. table%keeps) call write_line(table%csv, names, fault)
+      if (.not. table%keeps) call write_line(table%csv, joined(COLUMNS(table%shown)%name, ','), fault)
    end subroutine header
 
    !> Adds a fact about the run as a comment line. Fault EXIT_OUTPUT: the file cannot be written.

@@ -3,7 +3,7 @@
 module triax_stage_reader
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: lower_case, short, whole, LENGTH
+   use texts, only: joined, lower_case, short, whole, LENGTH
    use namelists, only: group_t
    use spelling, only: nearest_name
    use key_schema, only: get_text, line_of, given, refuse_idle_keys
@@ -177,10 +177,10 @@ contains
       if (is_stress .and. stage%given_interval) stage%suction_interval = stage%interval
       if (k%given('stress') .and. all(abs(sum(stage%stress_rows(:NORMAL, :), dim=1)) <= 0.0_wp)) then
          call refuse(k%group, 'stress', 'has no effect in a stage that prescribes no mean stress, in which net and '// &
-                     'effective stress differ (here control '//name_of(stage%control)//', led by '// &
+                     'effective stress differ (here control '//trim(CONTROL_NAMES(stage%control))//', led by '// &
                      trim(QUANTITIES(stage%lead)%key)//'); remove it.', fault)
       else if (k%given('stop_r_u') .and. .not. (keeps_volume(stage%control) .or. stage%keeps_air)) then
-         call refuse(k%group, 'stop_r_u', 'has no effect with control '//name_of(stage%control)// &
+         call refuse(k%group, 'stop_r_u', 'has no effect with control '//trim(CONTROL_NAMES(stage%control))// &
                      ', in which no pore pressure builds up; remove it.', fault)
       else if (2.0_wp/stage%increment > MAX_INCREMENTS .and. .not. is_stress) then
          call refuse(k%group, 'increment', '= '//short(stage%increment)//' could make more than '// &
@@ -197,13 +197,6 @@ contains
       call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, key))//trim(key)//' '//sentence)
    end subroutine refuse
 
-   function name_of(control) result(name)
-      integer, intent(in) :: control
-      character(:), allocatable :: name
-
-      name = trim(CONTROL_NAMES(control))
-   end function name_of
-
    !> Place of the word that a key gives in a list; the key must be there.
    subroutine read_word(group, key, words, place, fault)
       type(group_t), intent(in) :: group
@@ -212,12 +205,8 @@ contains
       type(fault_t), intent(inout) :: fault
       character(LENGTH) :: word
       character(:), allocatable :: list
-      integer :: i
 
-      list = trim(words(1))
-      do i = 2, size(words)
-         list = list//', '//trim(words(i))
-      end do
+      list = joined(words, ', ')
       place = 0
       if (.not. given(group, key)) then
          call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'&'//trim(group%name)//' lacks '//key// &
@@ -266,15 +255,10 @@ contains
       type(test_stage_t), intent(inout) :: stage
       type(fault_t), intent(inout) :: fault
       integer, allocatable :: leads(:)
-      character(:), allocatable :: choice
       integer :: i
 
       allocate (leads(0))   ! or gfortran believes the assignment to read it
       leads = leads_of(stage%control)
-      choice = trim(QUANTITIES(leads(1))%key)
-      do i = 2, size(leads)
-         choice = choice//' or '//trim(QUANTITIES(leads(i))%key)
-      end do
       do i = 1, size(QUANTITIES)
          associate (key => QUANTITIES(i)%key)
             if (.not. k%given(trim(key)) .or. (i == BY_SUCTION .and. .not. any(leads == i))) cycle
@@ -293,7 +277,7 @@ contains
       if (any(leads == BY_SUCTION) .and. k%given('d_suction')) stage%lead = BY_SUCTION
       if (stage%lead == 0) then
          call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)//'a stage of control '// &
-                    name_of(stage%control)//' needs '//choice//': '// &
+                    trim(CONTROL_NAMES(stage%control))//' needs '//joined(QUANTITIES(leads)%key, ' or ')//': '// &
                     k%about(QUANTITIES(leads(1))%key)//'.')
          return
       end if
