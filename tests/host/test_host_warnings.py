@@ -218,7 +218,7 @@ def test_no_doubt_no_warning():
 
 # Keys whose condition the program alone knows, as `:p_c` where they are declared: many in a scene, each with a reason.
 IDLE = """&scene name = 'idle' geometry = 'plane_strain' fields = '{fields}' pressures = 'linear'
- saturation_rate = 'full' seepage_inertia = 'no' initial_flow = 'drain' gravity = {gravity} /
+ saturation_rate = 'full' seepage_inertia = 'no' initial_flow = 'drain' gravity = {gravity} lanes = 'yes' /
 &mesh r = 0, 1, 2 r_cells = 1, 1 z = 0, 1 z_cells = 1 /
 &elastic name = 'rock' young = 1e6 poisson = 0.3 /
 &fluids k_w = 2e6 rho_w = 1 eta_w = 1e-6 gas = '{gas}' {air} rho_a = 0.001 eta_a = 2e-8 henry = 0 /
@@ -255,6 +255,7 @@ TOLD = [   # The differences of a scene, why keys of it have no effect, these ke
      "region.viscosity"),
     ("", "no stage is dynamic", "region.damping region.stiffness_damping scene.seepage_inertia"),
     ("", "on steps that are given", "stage.output_dt stage.dt_max"),
+    ("", "this processor is older than x86-64-v3", "scene.lanes"),
     ("power", "every stage is static", "permeability.a permeability.b permeability.c"),
     ("mualem", "every stage is static", "permeability.m"),
     ("constant", "every stage is static", "permeability.k_rw permeability.k_ra"),
@@ -282,7 +283,7 @@ def conditions_of_sources():
 def test_every_key_without_effect_is_told_with_its_reason():
     conditions = {"every stage is static": ":time", "no stage is dynamic": ":dynamic", "on steps that": ":controlled",
                   "on controlled steps": ":given", "without gravity": ":gravity", "no field p_c": ":p_c",
-                  "no field p_w": ":p_w", "no &region has drainage": ":flow"}
+                  "no field p_w": ":p_w", "no &region has drainage": ":flow", "this processor": ":lanes"}
     said = {}
     for which, why, keys in TOLD:
         if which not in said:
