@@ -31,12 +31,14 @@ module mud_substepping
       real(wp) :: factor     !< Factor on the size that this error allows.
       logical :: may_grow    !< No attempt at this substep was rejected.
       logical :: turns       !< The elastic domain turns sharply: third order.
+      logical :: divides     !< That of the trial, see there, but for pieces without length.
       integer :: elastic     !< Substeps without a direction so far.
       type(control_t) :: control
    end type stepping_t
 
-   !> Part of a substep below which what an event leaves of it has no length [-].
-   real(wp), parameter :: NO_LENGTH = 1.0e-6_wp
+   !> Part of a substep below which what an event leaves of it has no length [-]; where a process begins by drifting
+   !> back, rounding of the place where it begins leaves some.
+   real(wp), parameter :: NO_LENGTH = 1.0e-6_wp, NO_DRIFT = 1.0e-3_wp
    !> Turn of the domain, some degrees, from which on the higher order follows it: it is a transient that modified Euler
    !> pays for with many substeps, and whose errors add up along turning paths [-].
    real(wp), parameter :: SHARP = 1.0e-3_wp
@@ -169,15 +171,21 @@ contains
       type(stepping_t), intent(inout) :: step
       real(wp), intent(inout) :: h             !< size, a share of the increment [-]
       type(integration_t), intent(inout) :: it
-      real(wp) :: time, whole
+      real(wp) :: time, whole, tried
 
       whole = h
+      tried = step%h
       step%may_grow = .true.
       step%h = next_size(par, it%inc, it%trial, h, step%factor, h >= it%inc%to - it%inc%from)
       call stop_at_event(par, step%error, h, it)
-      ! Rounding decides whether the event that ended the substep before is met again: such a piece has no length, and
-      ! the substep after it is as long as it would be without.
-      if (h < NO_LENGTH*whole) step%h = min(step%h, whole)
+      ! Rounding decides whether the event that ended the substep before is met again, and whether a process that begins
+      ! there drifts first: such a piece has no length, and the substep after it is as long as it would be without.
+      if (h >= merge(NO_DRIFT, NO_LENGTH, it%trial%drifts)*whole) then
+         step%divides = it%trial%divides
+      else
+         step%h = min(step%h, tried)
+         if (it%trial%drifts) it%trial%divides = step%divides
+      end if
       if (it%trial%w(1)%no_root) step%elastic = step%elastic + 1
       if (step%elastic > 1 .and. par%guarded) then
          it%status = fail(MUD_NO_DIRECTION)
@@ -214,6 +222,7 @@ contains
       turn = turn_of(it%inc)
       step%turns = turn > SHARP
       step%may_grow = .true.
+      step%divides = it%trial%divides
       step%elastic = 0
       step%planned = it%state%last_step
       ! of the pair that is tried first
