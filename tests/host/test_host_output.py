@@ -286,6 +286,8 @@ def test_uninterrupted_run():
         ("more fields than times of them", foreign("frames_extent", 1e9), text, "damaged"),
         ("no number of steps", lambda: altered(lambda file: file.__delitem__("steps")), text, "damaged"),
         ("missing entry", lambda: altered(drop), text, "damaged"),
+        ("missing number of an observer", lambda: altered(lambda file: file.__delitem__("cycles_largest")), text,
+         "damaged"),
         ("no next step", lambda: altered(lambda file: file.__delitem__("control_dt")), text, "damaged"),
         ("no times of fields", lambda: altered(lambda file: file.__delitem__("frames")), text, "damaged"),
         ("other extent", lambda: altered(shorten), text, "damaged"),

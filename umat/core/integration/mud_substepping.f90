@@ -31,7 +31,7 @@ module mud_substepping
       real(wp) :: factor     !< Factor on the size that this error allows.
       logical :: may_grow    !< No attempt at this substep was rejected.
       logical :: turns       !< The elastic domain turns sharply: third order.
-      logical :: divides     !< That of the trial, see there, but for pieces without length.
+      logical :: divides     !< Sizes divided the rest before the last piece without length.
       integer :: elastic     !< Substeps without a direction so far.
       type(control_t) :: control
    end type stepping_t
