@@ -146,10 +146,8 @@ contains
                   ! The first balance is that of both fluids; where the air pressure is given, that of the water.
                   if (.not. constraint%air(i)) w = w - a
                end if
-               ! What p_a asks for is air: beside it the water is that of another &fix, or of a drained region.
                group = 0
                if (k > 0) group = run%model%fixes(k)%group
-               if (air_by(i) > 0) group(2) = run%model%fixes(air_by(i))%group
                associate (at => dofs%of(AT_P_W, i))
                   if (constraint%limited(at)) then
                      group = constraint%limited_by(at)
@@ -158,6 +156,8 @@ contains
                      if (.not. constraint%fixed(at)) w = 0.0_wp
                   end if
                end associate
+               ! What p_a asks for is air: beside it the water is that of another &fix, or of a drained region.
+               if (air_by(i) > 0) group(2) = run%model%fixes(air_by(i))%group
                if (group(1) > 0) sums(OUT_W, group(1)) = sums(OUT_W, group(1)) - w
                if (group(2) > 0) sums(OUT_A, group(2)) = sums(OUT_A, group(2)) - a
             end do

@@ -162,7 +162,7 @@ def test_water_at_rest_does_not_flow():
 def test_water_into_a_drained_region_is_not_that_of_a_support_of_the_air():
     # Half a metre of coupled soil above drained ground, p_w at its top 5 kPa above rest; p_a is given
     # everywhere, where it asks for air alone. Darcy: 2e-4 times 5 kPa over half a metre.
-    row = last(run("""&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 10 /
+    text = """&scene name = 'column' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 10 /
 &mesh r = 0, 1 r_cells = 1 z = 0, 0.5, 1 z_cells = 1, 1 /
 &elastic name = 'soil' young = 1.0e4 poisson = 0.25 /
 &fluids k_w = 1e15 /
@@ -176,10 +176,16 @@ def test_water_into_a_drained_region_is_not_that_of_a_support_of_the_air():
 &fix group = 'top' field = 'p_w' value = -5 /
 &fix group = 'all' field = 'p_a' /
 &initial p_w_slope = -10 p_c_slope = 10 /
-""", "drained"))
+"""
+    row = last(run(text, "drained"))
     near("the support of the water lets it in", row["top.outflow_w"], -2e-4 * 5 / 0.5, 1e-3)
     near("that of the air none out", row["all.outflow_w"], 0, 1e-3)
     check("and takes all of the air", row["top.outflow_a"] == 0, row)
+    # Weight moves water and air: on a face where the water may leave, air is that of its support.
+    seeps = text.replace("p_w_slope = -10 p_c_slope = 10", "p_w = -5 p_c = 15").replace(
+        "drainage = 'drained' /", "permeability = 'k' /").replace("value = -5", "kind = 'seepage'")
+    row = last(run(seeps.replace("1e6 dt = 1e6", "10 dt = 10"), "seeping"))
+    check("nor does a seepage face take it", row["top.outflow_a"] == 0 and row["all.outflow_a"] != 0, row)
 
 
 def test_rain_counts_per_horizontal_area():
