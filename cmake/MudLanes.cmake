@@ -24,6 +24,7 @@ function(mud_add_lanes sources core)
       --param=early-inlining-insns=400 --param=large-function-growth=10000 --param=large-function-insns=100000
       --param=inline-unit-growth=1000 --param=max-early-inliner-iterations=10 --param=large-stack-frame-growth=100000)
    set(copies lanes/mud_lane_choice.c)
+   set_source_files_properties(${copies} PROPERTIES COMPILE_DEFINITIONS MUD_LANES_COMPILED)
    foreach(level bits IN ZIP_LISTS levels vectors)
       mud_copy_of_core(wide ${level} ${bits} "${below};lanes/mud_lane_rates.f90;lanes/mud_lane_loops.f90" "${loops}")
       # Rounding of what is scalar stays that of the other build; inlined farther it takes 0.96 of the time.
@@ -45,7 +46,7 @@ function(mud_copy_of_core name level bits parts options)
    set(unit ${CMAKE_CURRENT_BINARY_DIR}/mud_${name}_${level}.F90)
    file(CONFIGURE OUTPUT ${unit} CONTENT "${includes}" @ONLY)
    list(TRANSFORM parts REPLACE ".*/(mud_([a-z_]+))[.]f90" "\\1=mud_of_${name}_${level}_\\2" OUTPUT_VARIABLE names)
-   list(APPEND names mud_lane_points=mud_lane_points_${level} mud_find_rates=mud_find_rates_${level})
+   list(APPEND names mud_points_of_level=mud_lane_points_${level} mud_find_rates=mud_find_rates_${level})
    list(TRANSFORM parts PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
    set_source_files_properties(${unit} PROPERTIES OBJECT_DEPENDS "${parts}" COMPILE_DEFINITIONS "${names}"
       COMPILE_OPTIONS "-march=x86-64-${level};-mprefer-vector-width=${bits};${options}")

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Increments side by side where the processor has what they are compiled for; compiled itself for any processor. */
+ * Increments side by side where the processor has what they are compiled for; compiled itself for any processor.
+ * A build system that compiles no copies of the core (cmake/MudLanes.cmake) has abi/mud_no_lanes.f90 instead. */
 int mud_lane_points(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports);
 int mud_lane_points_v3(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports);
 int mud_lane_points_v4(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports);
 
+#ifdef MUD_LANES_COMPILED
 int mud_lane_points(const void *material, const void *increments, int n, int tangent, void *outputs, void *reports)
 {
    if (__builtin_cpu_supports("x86-64-v4"))
@@ -21,3 +23,4 @@ void mud_fetch(const void *first, int bytes)
    for (int i = 0; i < bytes; i += 64)
       __builtin_prefetch((const char *)first + i);
 }
+#endif

@@ -13,10 +13,10 @@ module mud_lane_kernel
    use mud_vector, only: WIDTH
    implicit none (type, external)
    private
-   public :: mud_lane_points
+   public :: mud_points_of_level
 contains
    !> See mud_side_by_side. A failed increment has its status in its report alone.
-   recursive integer(c_int) function mud_lane_points(material, increments, n, tangent, outputs, reports) &
+   recursive integer(c_int) function mud_points_of_level(material, increments, n, tangent, outputs, reports) &
       bind(c)
       type(c_ptr), value :: material, increments, outputs, reports
       integer(c_int), value :: n, tangent
@@ -30,9 +30,9 @@ contains
       integer :: j
 
       call c_f_pointer(material, par)
-      mud_lane_points = 0
+      mud_points_of_level = 0
       if (.not. fits_lanes(par)) return
-      mud_lane_points = 1
+      mud_points_of_level = 1
       call c_f_pointer(increments, start, [n])
       call c_f_pointer(outputs, output, [n])
       call c_f_pointer(reports, report, [n])
@@ -51,5 +51,5 @@ contains
                                                             tangent > 0, output(j), it(j)%status)
          report(j) = report_of(it(j)%status, it(j)%counters, it(j)%reached)
       end do
-   end function mud_lane_points
+   end function mud_points_of_level
 end module mud_lane_kernel
