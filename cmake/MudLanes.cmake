@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 # mud_add_lanes(SOURCES CORE)
-# Sources of increments side by side (MUD_LANES of mud.h), for x86-64 and GNU compilers; none elsewhere. CORE: the files
-# of the core in their order.
+# Sources of increments side by side (MUD_LANES of mud.h), for x86-64 and GNU compilers; none elsewhere, nor on Windows,
+# where GCC aligns the stack to 16 bytes and vectors on it need 32 or 64. CORE: the files of the core in their order.
 #
 # For each of two kinds of processor they are the core once more, and what a rate needs of it again, compiled so that
 # loops over points become vectors. The preprocessor gives the modules of each copy names of their own, so that nothing
 # of a copy stands in for what is compiled for any processor. mud_lane_choice.c asks the processor.
 function(mud_add_lanes sources core)
    set(${sources} "" PARENT_SCOPE)
-   if(NOT (CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND
+   if(NOT (CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND NOT WIN32 AND
            CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND CMAKE_C_COMPILER_ID STREQUAL "GNU" AND
            CMAKE_C_COMPILER_VERSION VERSION_GREATER_EQUAL 12))
       return()

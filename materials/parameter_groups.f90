@@ -8,7 +8,7 @@ module parameter_groups
    use files, only: beside
    use key_schema, only: key_t, check_group, get_number, NONE, UNBOUNDED
    use texts, only: lower_case, short, whole, read_number, word_place, from_c
-   use namelists, only: group_t, read_groups, groups_of_text, find_entry
+   use namelists, only: group_t, read_groups, find_entry
    use library_tables, only: property_count, property_index, property_name, property_unit, property_meaning, &
                              property_option, option_words, range_for
    use stress_units, only: stress_unit_t, unit_of_atmosphere, in_unit
@@ -38,7 +38,7 @@ contains
       character(*), intent(out) :: doubt   !< Warning of the library, with its place; blank: none.
       type(fault_t), intent(inout) :: fault
       real(wp), intent(inout), optional :: tested(4)   !< Ranges as TESTED_KEYS; what is not given stays.
-      type(group_t), allocatable :: groups(:)
+      type(group_t) :: own
       character(:), allocatable :: path
       character(len(doubt)) :: doubt_of_file
       real(wp) :: ranges(4)
@@ -57,23 +57,15 @@ contains
       place = find_entry(group, 'file')
       if (place > 0) then
          path = beside(trim(group%file), trim(group%entries(place)%values(1)))
-         call read_groups(path, groups, fault)
+         call group_of_file(path, own, fault)
          if (fault%code /= 0) then
-            if (size(groups) == 0 .and. group%file /= '') &
+            if (own%line == 0 .and. group%file /= '') &
                fault%text = at_line(group%file, group%entries(place)%line)//fault%text
-            return
-         end if
-         if (size(groups) /= 1) then
-            call raise(fault, EXIT_INPUT, path//': has '//whole(size(groups))// &
-                       ' groups; a material file holds exactly one, &material.')
-         else if (groups(1)%name /= 'material') then
-            call raise(fault, EXIT_INPUT, at_line(path, groups(1)%line)//'the group is &'//trim(groups(1)%name)// &
-                       '; a material file holds exactly one, &material.')
-         else if (find_entry(groups(1), 'file') > 0) then
-            call raise(fault, EXIT_INPUT, at_line(path, groups(1)%entries(find_entry(groups(1), 'file'))%line)// &
+         else if (find_entry(own, 'file') > 0) then
+            call raise(fault, EXIT_INPUT, at_line(path, own%entries(find_entry(own, 'file'))%line)// &
                        'a material file cannot name another file; copy the values instead.')
          else
-            call apply_group(groups(1), props, title, doubt, ranges, fault)
+            call apply_group(own, props, title, doubt, ranges, fault)
          end if
          if (fault%code /= 0) return
       end if
@@ -87,19 +79,23 @@ contains
       doubt = doubt_of_file
    end subroutine read_parameters
 
-   !> A group &material that takes everything from a file, whose path begins at the present folder; blank: the
-   !> defaults. Fault EXIT_INPUT: the path is too long.
+   !> The group &material of a file. Fault EXIT_INPUT: the file cannot be read, or holds another group or more than one.
    subroutine group_of_file(file, group, fault)
       character(*), intent(in) :: file
-      type(group_t), intent(out) :: group
+      type(group_t), intent(out) :: group   !< Line 0: the file has none.
       type(fault_t), intent(inout) :: fault
       type(group_t), allocatable :: groups(:)
-      character(:), allocatable :: entry
 
-      entry = ''
-      if (file /= '') entry = 'file = "'//trim(file)//'"'
-      call groups_of_text('&material '//entry//' /', '', groups, fault)
-      if (fault%code == 0) group = groups(1)
+      call read_groups(file, groups, fault)
+      if (size(groups) > 0) group = groups(1)
+      if (fault%code /= 0) return
+      if (size(groups) /= 1) then
+         call raise(fault, EXIT_INPUT, trim(file)//': has '//whole(size(groups))// &
+                    ' groups; a material file holds exactly one, &material.')
+      else if (group%name /= 'material') then
+         call raise(fault, EXIT_INPUT, at_line(file, group%line)//'the group is &'//trim(group%name)// &
+                    '; a material file holds exactly one, &material.')
+      end if
    end subroutine group_of_file
 
    subroutine apply_group(group, props, title, doubt, tested, fault)

@@ -54,7 +54,8 @@ contains
       type(group_t) :: group
       type(stress_unit_t) :: wanted
 
-      call group_of_file(file, group, fault)
+      allocate (group%entries(0))
+      if (file /= '') call group_of_file(file, group, fault)
       if (fault%code == 0) call read_parameters(group, material%props, material%title, material%doubt, fault)
       if (fault%code /= 0) return
       material%unit = unit_of_atmosphere(material%props(property_index('p_atm')))

@@ -2,7 +2,7 @@
 !> Texts on request: how to call the driver, and a case file that runs unchanged.
 module triax_help
    use, intrinsic :: iso_fortran_env, only: wp => real64, output_unit
-   use texts, only: joined, short
+   use texts, only: short
    use faults, only: fault_t
    use key_schema, only: key_t, described
    use key_table, only: key_table_t, listing
@@ -11,7 +11,7 @@ module triax_help
    use retention_groups, only: new_retention
    use stress_units, only: KILOPASCAL
    use triax_case, only: case_keys
-   use triax_stage, only: CONTROL_NAMES, QUANTITIES, leads_of, LINEAR
+   use triax_stage, only: CONTROL_NAMES, lead_keys
    use library_tables, only: property_count, property_name, property_unit, property_origin, property_meaning, &
       property_range
    implicit none (type, external)
@@ -67,7 +67,7 @@ contains
       call print_keys(case_keys(KILOPASCAL), '')
       write (output_unit, '(a)') '   Controls, and the keys of which one ends the stage:'
       do i = 1, size(CONTROL_NAMES)
-         write (output_unit, '(4a)') '      ', CONTROL_NAMES(i), ' ', leads_text(i)
+         write (output_unit, '(4a)') '      ', CONTROL_NAMES(i), ' ', lead_keys(i)
       end do
    end subroutine print_help
 
@@ -83,15 +83,6 @@ contains
          write (output_unit, '(4a)') '      ', keys(k)%name, ' ', described(keys(k))
       end do
    end subroutine print_keys
-
-   !> "eps_a_end or q_end"
-   pure function leads_text(control) result(text)
-      integer, intent(in) :: control
-      character(:), allocatable :: text
-
-      text = joined(QUANTITIES(leads_of(control))%key, ' or ')
-      if (control == LINEAR) text = 'strain_i, stress_i and change_i of six constraints'
-   end function leads_text
 
    !> Prints a case that runs unchanged, with every parameter, its range and its origin.
    subroutine print_template()

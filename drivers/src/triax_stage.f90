@@ -7,9 +7,10 @@
 !> effective. The last one belongs to what leads.
 module triax_stage
    use, intrinsic :: iso_fortran_env, only: wp => real64
+   use texts, only: joined
    implicit none (type, external)
    private
-   public :: test_stage_t, set_constraints, quantity_rows, leads_of, controls_by, keeps_volume, &
+   public :: test_stage_t, set_constraints, quantity_rows, leads_of, lead_keys, controls_by, keeps_volume, &
              shear_control, general_control
    public :: CONTROL_NAMES, QUANTITIES, LINEAR
    public :: BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES
@@ -108,6 +109,16 @@ contains
 
       leads = pack(CONTROLS(control)%leads, CONTROLS(control)%leads > 0)
    end function leads_of
+
+   !> "eps_a_end or q_end"
+   pure function lead_keys(control) result(text)
+      integer, intent(in) :: control   !< Place in CONTROL_NAMES.
+      character(:), allocatable :: text
+
+      text = joined(QUANTITIES(leads_of(control))%key, ' or ')
+      if (control == CONSTANT_NET_STRESS) text = text//' or d_suction'
+      if (control == LINEAR) text = 'strain_i, stress_i and change_i of six constraints'
+   end function lead_keys
 
    !> 'control=drained|undrained', the controls that one of some quantities may lead: a condition of key_t.
    pure function controls_by(quantities) result(condition)

@@ -9,9 +9,9 @@ module triax_stage_reader
    use key_schema, only: get_text, line_of, given, refuse_idle_keys
    use key_table, only: key_table_t
    use stress_units, only: KILOPASCAL
-   use triax_stage, only: test_stage_t, set_constraints, leads_of, controls_by, keeps_volume, CONTROL_NAMES, &
-                          QUANTITIES, LINEAR, BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, BY_TAU, &
-                          BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
+   use triax_stage, only: test_stage_t, set_constraints, leads_of, lead_keys, controls_by, keeps_volume, &
+                          CONTROL_NAMES, QUANTITIES, LINEAR, BY_EPS_A, BY_EPS_V, BY_GAMMA, BY_SIGMA_A, BY_P, BY_Q, &
+                          BY_TAU, BY_SUCTION, BY_D_EPS, BY_D_SIGMA, BY_CHANGES, PER_PRESSURE, ROWS
    implicit none (type, external)
    private
    public :: read_stage
@@ -277,7 +277,7 @@ contains
       if (any(leads == BY_SUCTION) .and. k%given('d_suction')) stage%lead = BY_SUCTION
       if (stage%lead == 0) then
          call raise(fault, EXIT_INPUT, at_line(k%group%file, k%group%line)//'a stage of control '// &
-                    trim(CONTROL_NAMES(stage%control))//' needs '//joined(QUANTITIES(leads)%key, ' or ')//': '// &
+                    trim(CONTROL_NAMES(stage%control))//' needs '//lead_keys(stage%control)//': '// &
                     k%about(QUANTITIES(leads(1))%key)//'.')
          return
       end if

@@ -6,7 +6,7 @@ module triax_stage_run
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, EXIT_RUN
    use texts, only: short, whole
-   use triax_stage, only: test_stage_t, keeps_volume, shear_control, QUANTITIES, PER_PRESSURE
+   use triax_stage, only: test_stage_t, keeps_volume, shear_control, QUANTITIES, LINEAR, PER_PRESSURE
    use triax_control, only: plan_t, tally_t, plan_path, advance, lead, quantity
    use triax_point, only: soil_t, point_t, AXIAL, RADIAL
    implicit none (type, external)
@@ -15,6 +15,7 @@ module triax_stage_run
 
    !> A reversal stress is met to this share of the amplitude; the library's own tolerance is 1e-5 of the stress.
    real(wp), parameter :: REVERSAL_TOLERANCE = 1.0e-7_wp
+   real(wp), parameter :: ROUNDING = 1.0e-12_wp            !< Share of a change of suction.
    integer, parameter :: MAX_SEARCH = 50                   !< Bisection alone would come to 1e-15 of an increment.
    real(wp), parameter :: MAX_WAY = 0.5_wp                 !< Strain between two reversals of a stress cycle [-].
    real(wp), parameter :: ON_GRID = 1.0e-6_wp              !< Share of an output interval that counts as none: rounding.
@@ -40,7 +41,7 @@ module triax_stage_run
 
 contains
    !> Plans a stage from the present state of the sample. Fault EXIT_RUN: stop_r_u, or a constant water content, does
-   !> not fit the suction of the sample, or steps are given of what does not move.
+   !> not fit the suction of the sample, d_suction leads below 0, or steps are given of what does not move.
    subroutine begin_stage(soil, stage, point, pressure, run, fault)
       type(soil_t), intent(in) :: soil
       type(test_stage_t), intent(in) :: stage
@@ -61,6 +62,11 @@ contains
       else if (stage%keeps_water .and. point%suction <= 0.0_wp) then
          call raise(fault, EXIT_RUN, 'water = ''constant'' needs a suction to follow; the sample is saturated. '// &
                     'A saturated sample keeps its water where its volume is held (undrained).')
+      else if (stage%by_change .and. stage%control /= LINEAR .and. &   ! by LINEAR the increment of a host is repeated
+               point%suction + stage%suction_change < -ROUNDING*abs(stage%suction_change)) then
+         call raise(fault, EXIT_RUN, 'd_suction = '//short(stage%suction_change)//' is outside its range (from '// &
+                    short(0.0_wp - point%suction)//' '//trim(soil%law%unit%name)//': the stage begins at a suction '// &
+                    'of '//short(point%suction)//', and suction_end is 0 or more).')
       end if
       if (stage%cycles > 0) then
          run%centre = quantity(soil, stage, stage%cycle_by, point)

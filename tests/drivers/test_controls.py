@@ -72,6 +72,7 @@ MISTAKES = {
     "control = 'undrained', stop_r_u = 1.9, eps_a_end = 0.1": ["stop_r_u", "0.001", "1"],
     "control = 'drained', stress = 'total', eps_a_end = 0.1": ["total", "effective"],
     "control = 'drained', water = 'constant', suction_end = 5, eps_a_end = 0.1": ["suction_end"],
+    "control = 'constant_net_stress'": ["needs suction_end or d_suction:"],
     "control = 'linear', strain_1 = 1,0,0,0,0,0": ["constraint 2"],
     "control = 'drained', air = 'constant', eps_a_end = 0.1": ["air", "water = 'constant'", "dissolved"],
     "control = 'stress_path', d_sigma = 0,0,0,0,0,0": ["d_sigma"],
@@ -90,6 +91,8 @@ IDLE = {
     "undrained, eps_a_end = 0.01, stress = 'effective'": "stress has no effect in a stage that prescribes no mean",
     "k0, eps_v_end = 0, suction_end = 3, increment = 1e-4": "increment has no effect: what eps_v_end prescribes stays",
     "k0, eps_v_end = 0, suction_end = 3, output_interval = 1e-4": "output_interval has no effect: what eps_v_end",
+    "constant_net_stress, d_suction = -7": "d_suction = -7 is outside its range (from -6 kPa: the stage begins at a",
+    "k0, eps_v_end = 0, d_suction = -7": "d_suction = -7 is outside its range (from -6 kPa: the stage begins at a",
 }
 
 
@@ -146,6 +149,10 @@ def test_a_change_of_suction_leads_as_its_end_does():
                      for keys in (("suction_end = 15", "suction_end = 32"), ("d_suction = -5", "d_suction = 17")))
     check("the suction is there", changes[-1]["suction"] == 32, changes[-1])
     check("by the same rows", ends == changes, (len(ends), len(changes)))
+    # An increment that a host asked for is repeated whatever its end.
+    held = ", ".join(f"strain_{i + 1} = {', '.join(str(int(i == j)) for j in range(6))}" for i in range(6))
+    rows, _ = run(f"control = 'linear', {held}, d_suction = -7, increment = 0.5", initial=UNSATURATED)
+    check("linear leads below a suction of 0", rows[-1]["suction"] == -1, rows[-1])
 
 
 def test_shut_valves_keep_water_and_air():
@@ -315,7 +322,7 @@ def test_a_stress_that_cannot_be_reached_ends_with_code_3():
               and not (work / "case.csv").exists(), f"{done.returncode} {done.stderr}")
     help_text = subprocess.run([triax, "--help"], capture_output=True, text=True).stdout
     check("--help lists keys and controls",
-          all(w in help_text for w in ("stop_r_u", "constant_q", "cycle_by", "strain_6")))
+          all(w in help_text for w in ("stop_r_u", "constant_q", "cycle_by", "strain_6", "suction_end or d_suction")))
 
     try:
         import matplotlib  # noqa: F401

@@ -134,6 +134,9 @@ def test_plain_has_every_parameter_once():
     check("the stress of the start is in that unit",
           said("incrementaldriver-start", file, "--unit", "MPa").splitlines()[1] == "-0.1")
 
+    deep = "./"*200 + 'we"ird.nml'
+    (work / deep).write_bytes(file.read_bytes())
+    check("a path is read whatever its length and letters", said("plain", deep) == said("plain", file))
     for words, sentence in ((["abaqs"], "There is no table and no host abaqs"), ([], "No table or host is named"),
                             (["plain", "none.nml"], "none.nml: cannot be read"), (["props", file], "no material"),
                             (["plain", file, "--unit", "atm"], "There is no unit atm"),

@@ -2,18 +2,17 @@
 !> Reads what hosts pass to umat_, with NULL pointers, memory that was never set and other orders of components.
 module mud_arguments
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
-   use mud_host_increment, only: suction_change
+   use mud_host_increment, only: never_began, suction_change
    use mud_kinds, only: wp, NOTHING
    use mud_params, only: completed, is_length
-   use mud_registry, only: NPROPS, NPROPS_BASE, NSTATV_BASE, P_SHEAR_ORDER, &
-      S_LAYOUT, S_SUCTION
+   use mud_registry, only: NPROPS, NPROPS_BASE, NSTATV_BASE, P_SHEAR_ORDER, S_SUCTION
    use mud_status, only: fail, mud_status_t, MUD_BAD_NTENS, MUD_NULL_ARGUMENT, MUD_BAD_NPROPS, MUD_BAD_NSTATV, &
       MUD_BAD_INPUT, ON_ARGUMENT, ON_PROPS, ON_STATEV, ON_ROTATION
    use mud_tensor, only: is_finite, within
    use mud_units, only: stress_unit, LARGEST_STRESS
    implicit none (type, external)
    private
-   public :: check_arguments, has_past, rotates, read_rotation, turns_unread, begins_late, is_green_strain, suction_t, &
+   public :: check_arguments, rotates, read_rotation, turns_unread, begins_late, is_green_strain, suction_t, &
              read_suction, component_order, integer_at, real_at, SUCTION_AS_GIVEN, SUCTION_CONTRADICTS, &
              SUCTION_UNREADABLE, ARGUMENT_NAMES
 
@@ -76,13 +75,6 @@ contains
       if (n < NSTATV_BASE) &
          status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(NSTATV_BASE, wp), huge(1.0_wp))
    end subroutine check_arguments
-
-   !> True of a STATEV that has been initialised, by whatever layout. A layout that is not finite is no past.
-   pure logical function has_past(statev)
-      real(wp), intent(in) :: statev(:)
-
-      has_past = is_finite(statev(S_LAYOUT)) .and. .not. within(statev(S_LAYOUT), 0.0_wp)
-   end function has_past
 
    !> DROT as a matrix. None where it is NULL or zero, where the point has no past that could be rotated (hosts without
    !> finite rotations pass memory that was never set), and from CalculiX, whose stress and strain stand in axes that do
@@ -226,7 +218,7 @@ contains
          suction%change = 0.0_wp
       else if (.not. c_associated(predef)) then
          suction%start = stored
-      else if (has_past(statev)) then
+      else if (.not. never_began(statev)) then
          if (.not. is_length(size(props))) return
          unit = stress_unit(completed(props))
          ! What is beyond the largest suction is refused as it is.

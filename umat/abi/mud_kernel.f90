@@ -11,11 +11,11 @@ module mud_kernel
    use mud_blocks, only: blocks_t
    use mud_start, only: initial_state
    use mud_rates, only: stress_ratio
-   use mud_registry, only: NSTATV, NSTATV_BASE, VARIABLES, S_LAYOUT, S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, &
+   use mud_registry, only: NSTATV, NSTATV_BASE, VARIABLES, S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, &
       S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
    use mud_retention, only: check_preset, check_retention, check_saturation
    use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_STATE, MUD_BAD_INPUT, MUD_BAD_OPTION, &
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_INPUT, MUD_BAD_OPTION, &
       MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
    use mud_tensor, only: is_finite, within, all_finite, norm, rotate
    use mud_trace, only: trace_t
@@ -201,10 +201,6 @@ contains
 
       if (size(statev) < statev_size(par%options_t)) then
          status = wrong_nstatv(size(statev), par%options_t)
-         return
-      end if
-      if (.not. is_finite(statev(S_LAYOUT))) then
-         status = fail(MUD_BAD_STATE, ON_STATEV, S_LAYOUT, statev(S_LAYOUT), 0.0_wp, 1.0_wp)
          return
       end if
       call unpack_state(statev, par%options_t, state, status)

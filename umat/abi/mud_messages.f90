@@ -26,7 +26,7 @@ module mud_messages
       code_t(MUD_BAD_NPROPS, 'bad_nprops', &
          'wrong number of PROPS: give every entry; mud_count returns how many there are'), &
       code_t(MUD_BAD_NSTATV, 'bad_nstatv', &
-         'too few STATEV: reserve at least mud_count(MUD_STATEV) per point (Abaqus: *Depvar)'), &
+         'too few STATEV per point (Abaqus: *Depvar; PLAXIS: task 4 tells how many)'), &
       code_t(MUD_BAD_NTENS, 'bad_ntens', &
          'NTENS must be 6 (solid) or 4 (plane strain, axisymmetric) with three direct components'), &
       code_t(MUD_BAD_PROPS, 'bad_props', 'a material parameter is not finite or out of its range'), &

@@ -2,7 +2,7 @@
 !> The UMAT: Abaqus' signature, symbol umat_, every argument a C pointer that some host leaves NULL.
 module mud_umat
    use, intrinsic :: iso_c_binding, only: c_ptr, c_double, c_associated, c_f_pointer
-   use mud_arguments, only: check_arguments, has_past, rotates, read_rotation, turns_unread, begins_late, &
+   use mud_arguments, only: check_arguments, rotates, read_rotation, turns_unread, begins_late, &
       is_green_strain, suction_t, read_suction, component_order, integer_at, SUCTION_AS_GIVEN
    use mud_host_increment, only: never_began
    use mud_kernel, only: report_t, output_t, kernel_point, rotate_statev, failed_report, TANGENT_FROM_PROPS
@@ -84,7 +84,7 @@ contains
       real(c_double), pointer, contiguous :: state(:), times(:)
 
       call c_f_pointer(statev, state, [NSTATV_BASE])
-      if (begins_late(has_past(state), time, dtime, pnewdt)) then
+      if (begins_late(.not. never_began(state), time, dtime, pnewdt)) then
          call c_f_pointer(time, times, [2])
          call remark_on_late_start(times(2), place)
       end if
@@ -118,7 +118,7 @@ contains
       given%n = min(n_statev, statev_size(options_of(given%props)))
       associate (state => given%statev(:given%n))
          state = statev_in(1:given%n)
-         call read_rotation(drot, has_past(state), pnewdt, rotation, status)
+         call read_rotation(drot, .not. never_began(state), pnewdt, rotation, status)
          if (status%code /= MUD_OK) return
          if (rotates(rotation, state)) call rotate_statev(rotation, state)
          given%suction = read_suction(predef, dpred, pnewdt, state, given%props)
