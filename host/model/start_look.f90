@@ -158,6 +158,7 @@ contains
       character(60) :: why
       integer :: s, k
 
+      if (.not. model%domain%fluids%rho_w*model%domain%gravity > 0.0_wp) return
       start = 0.0_wp
       do s = 1, size(model%stages)
          factors = [(factor_at(model, model%gravity_amplitude, start + k*model%stages(s)%duration/TIMES), k=0, TIMES)]
@@ -292,19 +293,20 @@ contains
    subroutine look_at_zero(model, fix)
       type(model_t), intent(in) :: model
       type(fix_t), intent(in) :: fix
-      real(wp) :: moved
+      real(wp) :: zeroed   !< When [s].
       integer :: s
 
       if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%hold .or. fix%of_body) return
       do s = 1, size(model%stages) - 1
          if (.not. (model%stages(s)%zero_displacements .and. acts_in(fix%stages, model%stages(s)%name) .and. &
                     acts_in(fix%stages, model%stages(s + 1)%name))) cycle
-         moved = factor_at(model, fix%amplitude, sum(model%stages(:s)%duration)) &
-                 *max(abs(fix%value), abs(fix%value_slope))
-         if (.not. abs(moved) > 0.0_wp) cycle
+         zeroed = sum(model%stages(:s)%duration)
+         if (fix%from >= zeroed .or. fix%until <= zeroed) cycle
+         if (.not. abs(factor_at(model, fix%amplitude, zeroed))*max(abs(fix%value), abs(fix%value_slope)) > 0.0_wp) &
+            cycle
          call print_warning(place_of(fix)//'stage '//trim(model%stages(s)%name)//' sets displacements to zero, and '// &
-            'the value of '''//trim(fix%group_name)//''' counts from there: stage '//trim(model%stages(s + 1)%name)// &
-            ' moves it by as much again. Limit this &fix to its stages, and hold = ''yes'' in one for the others.')
+            'in stage '//trim(model%stages(s + 1)%name)//' the value of '''//trim(fix%group_name)//''' counts from '// &
+            'there, beyond what it has moved. Limit this &fix to its stages, and hold = ''yes'' in one for the others.')
          return
       end do
    end subroutine look_at_zero

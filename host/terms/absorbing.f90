@@ -16,7 +16,7 @@ module absorbing
    use key_table, only: key_table_t
    use kinds, only: wp
    use linear_forces, only: linear_forces_t
-   use material_point, only: response_t, batch_report_t
+   use material_point, only: material_t, material_slot_t, response_t, batch_report_t
    use model_types, only: model_t, problem_t, action_t, factor_at
    use name_search, only: mesh_group, history_named
    use permeability_laws, only: relative_t, relative_permeability
@@ -146,8 +146,9 @@ contains
    end subroutine make_dashpots
 
    !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points.
-   subroutine ground_behind(model, side, edge, state, ground, fault)
+   subroutine ground_behind(model, laws, side, edge, state, ground, fault)
       type(model_t), intent(in) :: model
+      type(material_slot_t), allocatable, intent(in) :: laws(:)   !< As in a state.
       type(side_t), intent(in) :: side
       integer, intent(in) :: edge(3)
       type(model_state_t), intent(in) :: state
@@ -162,7 +163,14 @@ contains
       ! The triangle on its left: of two that share it the other may be no ground.
       e = findloc([(any(model%domain%mesh%t6(4:6, i) == edge(3) .and. model%domain%mesh%t6(1:3, i) == edge(1)), &
                     i=1, size(model%domain%mesh%t6, 2))], .true., dim=1)
-      call look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
+      associate (region => model%domain%region_of(e))
+         if (allocated(laws)) then
+            call look_at_element(model, laws(region)%law, e, state, modulus, shear, s, slope, rho, fault)
+         else
+            call look_at_element(model, model%domain%regions(region)%law, e, state, modulus, shear, s, slope, rho, &
+                                 fault)
+         end if
+      end associate
       if (fault%code /= 0) return
       if (side%rho > 0.0_wp) rho = side%rho
       associate (region => model%domain%regions(model%domain%region_of(e)))
@@ -192,8 +200,9 @@ contains
 
    !> Means over the points of an element: constrained and shear modulus of the skeleton for a small strain [kPa],
    !> saturation and its slope against suction, density.
-   subroutine look_at_element(model, e, state, modulus, shear, s, slope, rho, fault)
+   subroutine look_at_element(model, law, e, state, modulus, shear, s, slope, rho, fault)
       type(model_t), intent(in) :: model
+      class(material_t), intent(in) :: law
       integer, intent(in) :: e
       type(model_state_t), intent(in) :: state
       real(wp), intent(out) :: modulus, shear, s, slope, rho
@@ -217,10 +226,10 @@ contains
             pressures = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
             suction(g) = pressures(2)
          end do
-         before = reshape(state%state(m%before_state(e) + 1:m%before_state(e + 1)), [region%law%n_state, m%rule])
+         before = reshape(state%state(m%before_state(e) + 1:m%before_state(e + 1)), [law%n_state, m%rule])
          after = before
-         call region%law%update(m%rule, state%stress(:, first:last), before, strain, suction, &
-                                0*suction, .true., response, after, report)
+         call law%update(m%rule, state%stress(:, first:last), before, strain, suction, 0*suction, .true., response, &
+                         after, report)
          if (report%code /= 0) then
             call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//' at an absorbing boundary '// &
                        'refuses its own state.')
@@ -318,12 +327,13 @@ contains
       end subroutine add
    end subroutine add_edge
 
-   !> Dashpots of what has acted, also before a restart. Sides that no longer act are freed of what they held.
+   !> Dashpots of what has acted, also before a restart. What no side holds any more is freed.
    subroutine begin_stage(self, begins, problem, fault)
       class(absorbing_t), intent(inout) :: self
       logical, intent(in) :: begins
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
+      logical, allocatable :: keeps(:)   !< (unknowns) Of the sides that act.
       integer :: i
 
       if (fault%code /= 0) return
@@ -332,10 +342,14 @@ contains
       end do
       self%at_start = begins
       if (.not. begins) return
+      allocate (keeps(problem%model%dofs%n), source=.false.)
+      do i = 1, size(self%sides)
+         if (acts(self%sides(i), problem%model, problem%at%stage)) keeps = keeps .or. self%sides(i)%held
+      end do
       do i = 1, size(self%sides)
          associate (side => self%sides(i), number => problem%at%stage)
             if (acts(side, problem%model, number - 1) .and. .not. acts(side, problem%model, number)) &
-               where (side%held) problem%constraint%offset = 0.0_wp
+               where (side%held .and. .not. keeps) problem%constraint%offset = 0.0_wp
          end associate
       end do
    end subroutine begin_stage
@@ -392,7 +406,8 @@ contains
             if (.not. begin_to_act(i)) cycle
             associate (side => self%sides(i))
                do e = 1, size(side%edges, 2)
-                  call ground_behind(problem%model, side, side%edges(:, e), problem%state, side%behind(:, e), fault)
+                  call ground_behind(problem%model, problem%next%laws, side, side%edges(:, e), problem%state, &
+                                     side%behind(:, e), fault)
                   if (fault%code /= 0) return
                end do
                call make_dashpots(problem%model, side, problem%constraint%linear(side%dashpots))
