@@ -8,7 +8,8 @@ module material_mud
    use key_table, only: key_table_t
    use library_tables, only: property_count, property_index, property_name, property_range, range_for, statev_index, &
                              statev_name
-   use material_point, only: range_t, material_t, response_t, batch_report_t, remark_t, NAME_LENGTH, NO_PRESET
+   use material_point, only: range_t, material_t, response_t, batch_report_t, remark_t, MOST_POINTS, NAME_LENGTH, &
+                             NO_PRESET
    use retention_curves, only: saturation_t
    use mud_interface, only: mud_report, mud_blocks, mud_points, mud_prepared_size, mud_prepared_statev, &
                             mud_prepared_lanes, mud_prepare, mud_init, mud_update, mud_update_points, mud_saturation, &
@@ -230,27 +231,29 @@ contains
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
       type(batch_report_t), intent(out) :: report
-      type(mud_report) :: of_point(n)
+      type(mud_report) :: of_point(MOST_POINTS)
       type(mud_blocks) :: blocks
-      real(wp) :: stress_(6), state_(size(state, 1))
+      real(wp) :: stress_(6), ends(MOST_POINTS)
+      real(wp), allocatable :: state_(:)   !< With fading alone.
       integer(c_int) :: code, kind
       integer :: g
 
       kind = MUD_TANGENT_NONE
       if (with_tangent) kind = self%tangent
-      if (self%lanes) call update_side_by_side(self, n, stress, state, strain, suction(:n) + d_suction(:n), kind, &
-                                               response, new_state, of_point)
+      ends(:n) = suction(:n) + d_suction(:n)
+      if (self%lanes) call update_side_by_side(self, n, stress, state, strain, ends, kind, response, new_state, &
+                                               of_point)
+      if (self%fade < 1.0_wp) allocate (state_(size(state, 1)))
       do g = 1, n
          if (self%lanes) then
             code = of_point(g)%status
          else if (self%fade < 1.0_wp) then
             call faded(self, stress(:, g), state(:, g), stress_, state_)
-            code = mud_update(self%prepared, stress_, state_, self%n_state, strain(:, g), suction(g) + d_suction(g), &
-                              kind, response%stress(:, g), new_state(:, g), blocks, of_point(g))
+            code = mud_update(self%prepared, stress_, state_, self%n_state, strain(:, g), ends(g), kind, &
+                              response%stress(:, g), new_state(:, g), blocks, of_point(g))
          else
-            code = mud_update(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), &
-                              suction(g) + d_suction(g), kind, response%stress(:, g), new_state(:, g), blocks, &
-                              of_point(g))
+            code = mud_update(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), ends(g), kind, &
+                              response%stress(:, g), new_state(:, g), blocks, of_point(g))
          end if
          if (with_tangent .and. code == 0 .and. .not. self%lanes) then
             response%dsig_deps(:, :, g) = blocks%dsig_deps
@@ -279,7 +282,8 @@ contains
       real(wp), intent(inout), contiguous, target :: new_state(:, :)
       type(mud_report), intent(inout), contiguous, target :: reports(:)
       type(mud_points) :: points
-      real(wp), target :: stress_(6, n), state_(size(state, 1), n), slopes(6, n)
+      real(wp), target :: stress_(6, MOST_POINTS), slopes(6, MOST_POINTS)
+      real(wp), allocatable, target :: state_(:, :)   !< With fading alone.
       logical :: halting(size(ieee_usual))
       integer :: g
 
@@ -289,6 +293,7 @@ contains
                           dsig_deps=c_loc(response%dsig_deps), dsig_dpc=c_loc(response%dsig_dpc), &
                           dsw_deps=c_loc(slopes), dsw_dpc=c_loc(response%dsw_dpc), reports=c_loc(reports))
       if (self%fade < 1.0_wp) then
+         allocate (state_(size(state, 1), n))
          do g = 1, n
             call faded(self, stress(:, g), state(:, g), stress_(:, g), state_(:, g))
          end do
@@ -301,7 +306,7 @@ contains
       if (mud_update_points(self%prepared, 1, points) < 0) reports%status = MUD_NOT_PREPARED
       call ieee_set_flag(ieee_usual, .false.)
       call ieee_set_halting_mode(ieee_usual, halting)
-      response%dsw_dev(:n) = slopes(1, :)   ! the normal components are equal, those of shear are zero
+      response%dsw_dev(:n) = slopes(1, :n)   ! the normal components are equal, those of shear are zero
    end subroutine update_side_by_side
 
    !> Adds the work of a point; what a failure is about is that of the last one.

@@ -37,7 +37,7 @@ module material_point
    !> Report of a batch of updates.
    type :: batch_report_t
       integer :: code = 0         !< 0: done; negative: the caller's mistake; positive: a hard increment.
-      integer :: point = 0        !< The point that failed; those behind it were not updated.
+      integer :: point = 0        !< The first point that failed.
       real(wp) :: factor = 1.0_wp !< Suggested factor on the increment, below 1 after a failure.
       integer :: n_rate = 0       !< Rate evaluations, of all points.
       integer :: n_substep = 0    !< Accepted substeps.
@@ -129,8 +129,8 @@ module material_point
          character(*), intent(out) :: text
       end subroutine initial_state_i
 
-      !> One increment at n points, from (stress, state, suction); thread safe, allocates nothing. Ends at the first
-      !> point that fails, whose new state and answers are of no use.
+      !> One increment at n points, from (stress, state, suction); thread safe. Where a point fails, new states and
+      !> answers of it and of those behind it are of no use.
       subroutine update_i(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
                           report)
          import :: material_t, response_t, batch_report_t, wp

@@ -27,6 +27,7 @@ module material_umat
    integer, parameter :: KRATOS(6) = [1, 2, 3, 4, 6, 5]   !< Shear 12, 23, 13.
    real(wp), parameter :: UNIT(3, 3) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, &
                                                 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+   real(wp), parameter :: SAME_S_W = 1.0e-4_wp   !< Two degrees of saturation of a start that agree [-].
    real(wp), parameter :: STEP = 1.0_wp          !< DTIME of an update.
    integer, parameter :: MOST = 10000            !< STATEV that a law may have.
    integer, parameter :: OWN = 9                 !< Number of state variables after those of the UMAT.
@@ -174,6 +175,13 @@ contains
       call begin_point(self, stress, suction, void_ratio, sat%s, response, after, report)
       if (report%code /= 0) then
          call self%message(report, text)
+         return
+      end if
+      if (self%saturation_at > 0 .and. abs(response%s_w(1) - sat%s) > SAME_S_W) then
+         text = trim(self%symbol)//' begins this point with S_w = '//short(response%s_w(1))//' (saturation_at); at '// &
+                'an isotropic stress, for weights at the start, S_w = '//short(sat%s)//' (1 also where it refuses '// &
+                'that). At the start S_w must follow from suction and void ratio alone: correct saturation_at, '// &
+                'or leave it out and give a retention curve.'
          return
       end if
       state = after(:, 1)

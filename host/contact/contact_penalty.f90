@@ -36,7 +36,6 @@ module contact_penalty
       private
       integer, allocatable :: first_pair(:)     !< First pair of every slave edge.
       type(pair_t), allocatable :: pair(:)
-      type(search_t) :: search
       integer, allocatable :: position(:), touched(:)   !< Unknowns that a nodal gap depends on.
       real(wp), allocatable :: left(:), right(:)        !< Force of a unit dp_A, slope of p_A over -1.
       real(wp), allocatable :: load(:)                  !< int M_A p 2 pi r dGamma, pointwise form.
@@ -108,8 +107,6 @@ contains
       if (status%code /= CONTACT_OK) return
       if (size(geometry%slave_edges) == 0 .or. size(geometry%master_edges) == 0) return
 
-      call find_candidates(work%search, slave_x, geometry%slave_edges, master_x, geometry%master_edges, &
-                           geometry%options%search_radius)
       call find_whole(geometry, slave_x, result)
       call find_gaps(geometry, slave_x, master_x, work, result, status)
       if (status%code /= CONTACT_OK) return
@@ -153,17 +150,20 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
+      type(search_t) :: search
       real(wp) :: weight(3), weighted_gap(3), missed
       integer :: e, c, n
 
+      call find_candidates(search, slave_x, geometry%slave_edges, master_x, geometry%master_edges, &
+                           geometry%options%search_radius)
       result%weight = 0.0_wp
       result%gap = 0.0_wp
       n = 0
       do e = 1, size(geometry%slave_edges, 2)
          work%first_pair(e) = n + 1
-         do c = work%search%first(e), work%search%first(e + 1) - 1
+         do c = search%first(e), search%first(e + 1) - 1
             if (n == size(work%pair)) call grow_pairs(work%pair)
-            associate (pair => work%pair(n + 1), master => work%search%candidate(c))
+            associate (pair => work%pair(n + 1), master => search%candidate(c))
                pair%x = of_edges(geometry, e, master, slave_x, master_x)
                call find_overlap(pair%x, geometry%free(geometry%master_edges(1:2, master)), pair%overlap)
                if (pair%overlap%segments == 0) cycle

@@ -87,14 +87,15 @@ contains
       type(assembly_t), intent(inout) :: assembly
       real(wp) :: seconds, t0
       type(block_t) :: block
+      type(block_t) :: failed   !< The first block that failed.
       type(points_t) :: points
       type(element_t) :: out
-      integer :: bad, e, ne, rates, threads
+      integer :: e, ne, rates, threads
 
       ne = size(dofs%element, 2)
       seconds = 0.0_wp
       rates = 0
-      bad = ne + 1
+      failed%first = ne + 1
       t0 = clock()
       block%source = merge(BY_MATERIAL, assembly%source, assembly%fallback /= NO_FALLBACK)
       block%fallback = assembly%fallback
@@ -104,22 +105,28 @@ contains
       if (assembly%fallback /= NO_FALLBACK .and. .not. allocated(assembly%soft)) allocate (assembly%soft(ne))
       if (assembly%with_change .and. .not. allocated(assembly%d_r)) allocate (assembly%d_r(size(dofs%element, 1), ne))
       !$omp parallel do num_threads(threads) schedule(dynamic, 1) default(shared) private(e) &
-      !$omp firstprivate(block, out) reduction(+:seconds, rates) reduction(min:bad)
+      !$omp firstprivate(block, out) reduction(+:seconds, rates)
       do e = 1, ne, MOST_ELEMENTS
-         call compute_elements(e, min(e + MOST_ELEMENTS - 1, ne), block, out, seconds, rates, bad)
+         call compute_elements(e, min(e + MOST_ELEMENTS - 1, ne), block, out, seconds, rates)
       end do
       !$omp end parallel do
       assembly%rate_evaluations = rates
       assembly%bad_element = 0
-      if (bad <= ne) then
+      if (failed%first <= ne) then
          ! Once more one by one, for the answer of the first that failed: which is first does not depend on the threads.
-         do e = bad, min(bad + MOST_ELEMENTS - 1, ne)
+         do e = failed%first, failed%last
             block%first = e
             block%last = e
             call update_block(domain, scheme, old, new, with_tangent, assembly%slopes, block, points)
-            assembly%bad_element = e
             if (block%report%code /= 0) exit
          end do
+         ! A law that remembers its calls may refuse none of them now: then its answer of before counts.
+         if (block%report%code == 0) then
+            e = failed%first + (failed%report%point - 1)/domain%rule
+            block%report = failed%report
+            block%report%point = failed%report%point - (e - failed%first)*domain%rule
+         end if
+         assembly%bad_element = e
          assembly%bad_point = block%report%point
          assembly%bad = block%report
          return
@@ -134,13 +141,13 @@ contains
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    contains
-      !> Elements from .. to, those of one region together. `bad`: the least first element of a block that failed.
-      subroutine compute_elements(from, to, block, out, seconds, rates, bad)
+      !> Elements from .. to, those of one region together.
+      subroutine compute_elements(from, to, block, out, seconds, rates)
          integer, intent(in) :: from, to
          type(block_t), intent(inout) :: block
          type(element_t), intent(inout) :: out
          real(wp), intent(inout) :: seconds
-         integer, intent(inout) :: rates, bad
+         integer, intent(inout) :: rates
          type(points_t) :: points
          integer :: e
 
@@ -161,7 +168,9 @@ contains
             seconds = seconds + block%seconds
             rates = rates + block%report%n_rate
             if (block%report%code /= 0) then
-               bad = min(bad, block%first)
+               !$omp critical
+               if (block%first < failed%first) failed = block
+               !$omp end critical
                cycle
             end if
             do e = block%first, block%last

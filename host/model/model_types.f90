@@ -246,7 +246,7 @@ contains
       type(fault_t), intent(inout) :: fault
    end subroutine begin_run
 
-   !> The start of the stage solution%at%stage, from solution%state; also where a run is taken up within the stage.
+   !> The start of the stage problem%at%stage, from problem%state; also where a run is taken up within the stage.
    subroutine begin_stage(self, begins, problem, fault)
       class(term_t), intent(inout) :: self
       logical, intent(in) :: begins   !< Else the run is in the middle of it.
@@ -254,8 +254,8 @@ contains
       type(fault_t), intent(inout) :: fault
    end subroutine begin_stage
 
-   !> Before an attempt at a step of length dt from solution%state to solution%next; of length 0 where a stage begins.
-   !> solution%constraint has the loads of the scene and of terms before this one in the registry.
+   !> Before an attempt at a step of length dt from problem%state to problem%next; of length 0 where a stage begins.
+   !> problem%constraint has the loads of the scene and of terms before this one in the registry.
    subroutine before_step(self, dt, problem, fault)
       class(term_t), intent(inout) :: self
       real(wp), intent(in) :: dt   !< [s]
@@ -270,7 +270,7 @@ contains
       type(problem_t), intent(inout) :: problem
    end subroutine prescribe
 
-   !> After a step that Newton's method has solved: values of solution%next that follow from its unknowns.
+   !> After a step that Newton's method has solved: values of problem%next that follow from its unknowns.
    subroutine complete(self, problem)
       class(term_t), intent(in) :: self
       type(problem_t), intent(inout) :: problem

@@ -36,5 +36,4 @@ contains
       if (k%lists) return
       if (eta > 0.0_wp) model%domain%regions(number)%against_rate = eta*DEVIATOR
    end subroutine build_group
-
 end module viscosity

@@ -94,6 +94,10 @@ LAW&permeability name = 'k' intrinsic = 1e-12 /
     check("start: both run", one.returncode == other.returncode == 0, one.stderr + other.stderr)
     for file in ("histories.csv", "ledger.csv", "points_wet.csv"):
         check(f"start: MUD as a UMAT is MUD, digit by digit, in {file}", cells(left / file) == cells(right / file))
+    wrong = re.sub("saturation_at = .*", f"saturation_at = {states.index('memory_11') + 1}", foreign)
+    done, _ = run(text.replace("LAW", wrong), "start_wrong")
+    check("start: an S_w that follows from the stress is refused", done.returncode == 15 and
+          "for weights at the start, S_w = 0 " in done.stderr, f"{done.returncode} {done.stderr}")
 
     # One void ratio and one degree of saturation a point: what the host computes with is what the law keeps.
     text = (root / "tests/host/scenes/restart.nml").read_text()

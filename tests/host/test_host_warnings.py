@@ -62,6 +62,8 @@ DOUBTS = [
      ["floor of &permeability has no effect with law = 'constant'"]),
     ("parameter behind a switch", "toyoura.nml'", "toyoura.nml' zeta_chi = 10",
      ["scene.nml:3: zeta_chi has no effect with c_chi = 0"]),
+    ("parameter of the file behind a switch of the scene", "toyoura.nml'", "hostun_hysteresis.nml' hysteresis = 0",
+     ["hostun_hysteresis.nml:35: P_aw has no effect with hysteresis = 0"]),
     ("pressure of a static stage", "'quasi_static'", "'static'",
      ["scene.nml:16: p_w has no effect: the stages in which it acts are static"]),
     ("inflow of a static stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"

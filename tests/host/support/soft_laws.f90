@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> A law without stiffness, for the tests of what the host does about it: elastic as long as an increment is short; one
-!> that is longer meets nine tenths of the stress and a tangent of zero.
+!> that is longer meets nine tenths of the stress and a tangent of zero. It may refuse batches of many points, and no
+!> point of a shorter one.
 module soft_laws
    use kinds, only: wp
    use material_elastic, only: elastic_t, isotropic
@@ -15,17 +16,19 @@ module soft_laws
    type, extends(elastic_t) :: soft_t
       real(wp) :: limit = 0.0_wp        !< Largest strain of an increment that meets stiffness [-].
       logical :: knows_elastic = .true. !< Whether it has an elastic tangent to fall back on.
+      integer :: most_points = huge(1)  !< Points of the longest batch that it does not refuse.
    contains
       procedure :: update => soft_update
       procedure :: elastic_tangent => soft_elastic_tangent
    end type soft_t
 contains
    !> Makes the elastic law of a region a soft one.
-   subroutine soften(model, region, limit, knows_elastic)
+   subroutine soften(model, region, limit, knows_elastic, most_points)
       type(model_t), intent(inout) :: model
       integer, intent(in) :: region
       real(wp), intent(in) :: limit
       logical, intent(in) :: knows_elastic
+      integer, intent(in), optional :: most_points
       type(soft_t) :: soft
 
       associate (one => model%domain%regions(region))
@@ -37,6 +40,7 @@ contains
          end select
          soft%limit = limit
          soft%knows_elastic = knows_elastic
+         if (present(most_points)) soft%most_points = most_points
          deallocate (one%law)
          allocate (one%law, source=soft)
       end associate
@@ -55,6 +59,7 @@ contains
 
       call self%elastic_t%update(n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
                                 report)
+      if (n > self%most_points) report = batch_report_t(code=1, point=self%most_points + 3)
       do g = 1, n
          if (maxval(abs(strain(:, g))) < self%limit) cycle
          response%stress(:, g) = stress(:, g) + LEFT*(response%stress(:, g) - stress(:, g))
