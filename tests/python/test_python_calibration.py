@@ -167,10 +167,14 @@ def test_without_e_eps_v_is_believed():
         ("oedometer", "strains of compression as fractions under per cent",
          "test,sigma_a_kPa,eps_a_percent,e_0\nO,25,0,0.8\nO,100,0.005,0.8\nO,400,0.011,0.8\n", "call the column eps_a"),
         ("stiffness", "G_max in MPa", "p_kPa,e,G_max\n100,0.7,90\n200,0.7,127\n", "G_max_MPa"),
+        ("stiffness", "G_max in Pa", "p_kPa,e,G_max\n100,0.7,6.1e7\n200,0.7,8.5e7\n", "G_max_Pa"),
         ("modulus", "shear strains in per cent", "gamma,G_ratio,p_0,e_0\n0.001,0.98,100,0.8\n0.01,0.83,100,0.8\n",
          "gamma_percent"),
         ("modulus", "the same with damping alone", "gamma,damping,p_0,e_0\n0.001,0.01,100,0.8\n0.01,0.03,100,0.8\n",
          "gamma_percent"),
+        ("modulus", "damping as fractions under per cent",
+         "gamma,G_ratio,damping_percent,p_0,e_0\n1e-4,0.7,0.04,100,0.8\n3e-3,0.2,0.18,100,0.8\n",
+         "call its column damping"),
         ("modulus", "shear strains as fractions under per cent",
          "gamma_percent,G_ratio,p_0,e_0\n1e-5,0.95,100,0.8\n1e-3,0.33,100,0.8\n", "call the column gamma"),
         ("modulus", "damping in per cent", "gamma,damping,p_0,e_0\n1e-4,4,100,0.8\n", "damping_percent"),
@@ -180,8 +184,35 @@ def test_without_e_eps_v_is_believed():
         ("cyclic", "r_u in per cent",
          "control,cycle_by,amplitude,cycle,p_0,e_0,r_u\nundrained,q,30,1,100,0.8,12\n", "r_u in per cent"),
         ("retention", "suction in MPa", "suction,S_w\n0.001,0.98\n0.005,0.6\n0.05,0.2\n", "suction_MPa"),
+        ("retention", "suction in Pa", "suction,S_w\n1e5,0.98\n5e6,0.6\n2e7,0.2\n", "allowed 0 to 1e+07 (in Pa?"),
     ):
         hears(what, text, words, kind=kind)
+    told = sentence("suction,S_w\n1,0.98\n5,0.6\n20,-0.2\n", "retention")
+    check("a saturation below zero is not called per cent", told.endswith("S_w = -0.2, allowed -0.05 to 1.05"), told)
+    # What looks like another unit and is none: clay, lowest stresses, rounded numbers, a unit that is written.
+    shear = "test,eps_a_percent,q_kPa,eps_v_percent,sigma_3_kPa,e_0\n"
+    for kind, what, text in (
+        ("drained", "dense sand at 50 kPa in rows of a digitised curve",
+         shear + "".join(f"D,{row},50,0.7\n" for row in (
+             "0,0,0", "1,190,-0.15", "2,225,-0.6", "5,205,-3", "10,160,-5.5"))),
+        ("drained", "dense sand that dilates at half of its strength",
+         shear + "".join(f"D,{row},12,0.7\n" for row in (
+             "0,0,0", "0.5,38,-0.13", "1,52,-0.5", "2,62,-1.4", "3,60,-2.2"))),
+        ("drained", "dense sand in extension",
+         shear + "".join(f"D,{row},100,0.6\n" for row in ("0,0,0", "-1,-40,-0.6", "-5,-72,-1.4", "-10,-73,-1.5"))),
+        ("stiffness", "soft clay", "p_kPa,e,G_max_kPa\n10,2.1,700\n20,2.0,900\n"),
+        ("retention", "gravel", "suction_cm,S_w\n0.1,1\n1,0.6\n2.5,-0.002\n"),
+        ("retention", "gravel in kPa", "suction_kPa,S_w\n0.01,1.01\n0.1,0.6\n0.25,0.1\n"),
+        ("modulus", "plastic clay", "gamma,G_ratio,damping,p_0,e_0\n1e-6,1,-0.002,100,2.5\n5e-3,0.65,0.03,100,2.5\n"),
+        ("modulus", "stiff clay whose gamma has its unit", "gamma_fraction,G_ratio,p_0,e_0\n1e-2,0.75,100,2.5\n"),
+        ("modulus", "little damping at large strain", "gamma,damping,p_0,e_0\n1e-4,0.01,99,0.6\n0.05,0.045,99,0.6\n"),
+        ("modulus", "sand at 5 kPa", "gamma_percent,G_ratio,p_0,e_0\n1e-3,0.8,5,0.9\n5e-3,0.48,5,0.9\n"),
+        ("modulus", "a test at 1 g", "gamma,G_ratio,p_0,e_0\n1e-4,0.4,0.5,0.9\n"),
+        ("modulus", "a test at 1 g whose stress has its unit", "gamma,G_ratio,p_0_kPa,e_0\n1e-4,0.4,0.2,0.9\n"),
+        ("liquefaction", "a stress ratio above 1", "csr,N,p_0,e_0\n1.2,1,100,0.6\n"),
+        ("oedometer", "a rounded void ratio", "sigma_a_kPa,e\n10,0.55\n20,0.55\n40,0.55\n"),
+    ):
+        check(f"{what} is read", sentence(text, kind) == "", sentence(text, kind))
     hears("S_w that grows with suction", "suction_kPa,S_w\n1,0.2\n5,0.6\n10,0.9\n", "must fall", kind="retention")
     hears("S_w in per cent", "suction_kPa,S_w\n1,98\n5,60\n10,20\n", "per cent?", kind="retention")
     hears(

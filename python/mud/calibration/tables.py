@@ -47,24 +47,28 @@ TOTAL = 0.02  # share of p at the start by which p - q/3 moves at least in an un
 # What leads the path of a test, and whether by its logarithm.
 LEADS = {"drained": ("eps_a", False), "undrained": ("eps_a", False), "oedometer": ("sigma_a", True)}
 LEADS |= {"isotropic": ("p", True), "retention": ("suction", True), "cyclic": ("cycle", False)}
-# What a quantity of soil can be, and what a number outside may mean.
+# What a quantity of soil can be, measured, and what a number below or above may mean.
 RANGES = (
-    ("e", 0.01, 5.0, "a void ratio in per cent?"),
-    ("e_0", 0.01, 5.0, "a void ratio in per cent?"),
-    ("S_w", 0.0, 1.0 + 1e-9, "S_w in per cent?"),
-    ("suction", 0.0, 1e7, "a matric potential? Suction is positive"),
-    ("r_u", -10.0, 2.0, "r_u in per cent?"),
-    ("damping", 0.0, 1.0, "damping in per cent? Call the column damping_percent"),
-    ("G_ratio", 0.0, 1.5, "it is G over G_max"),
-    ("csr", 0.0, 1.0, "csr in per cent? It is q/(2 p_0)"),
-    ("G_max", 0.0, 1e8, "G_max in Pa?"),
+    ("e", 0.01, 5.0, "", " (a void ratio in per cent?)"),
+    ("e_0", 0.01, 5.0, "", " (a void ratio in per cent?)"),
+    ("S_w", -0.05, 1.05, "", " (S_w in per cent? Call the column S_w_percent)"),
+    ("suction", 0.0, 1e7, " (a matric potential? Suction is positive)", " (in Pa? Call the column suction_Pa)"),
+    ("r_u", -10.0, 2.0, "", " (r_u in per cent? Call the column r_u_percent)"),
+    ("damping", -0.02, 1.0, "", " (damping in per cent? Call the column damping_percent)"),
+    ("G_ratio", 0.0, 1.5, "", " (it is G over G_max, as a fraction)"),
+    ("csr", 0.0, 3.0, "", " (csr in per cent? It is q/(2 p_0), as a fraction)"),
+    ("G_max", 0.0, 1e7, "", " (in Pa call the column G_max_Pa, in kPa G_max_kPa)"),
 )
-SOFTEST = 1e3  # [kPa]; no sand that is tested has a smaller G_max: less means MPa
+# Sizes that are doubted where the head has no unit.
+SMALLEST_START = 0.5  # [kPa] largest p_0 of a test, also at 1 g: less means MPa
+SOFTEST = 1e3  # [kPa]; sand has a larger G_max: less means MPa
 DRAINS = 0.3  # [kPa], 3 cm of water: a retention test goes further
+SHEARED, STILL, NARROW = 1e-2, 0.7, 0.04  # at this shear strain soil has less of G_max left, and more damping
+# Fractions under a head in per cent.
+SMALL, LOST = 2e-5, 0.5  # up to this shear strain soil keeps more of G_max
+DAMPED, LEAST = 1e-3, 5e-3  # at this one it has more damping
 COMPRESSES = 4e-5  # [kPa^-1/2] strain of compression over the growth of stress^(1/2); stiffer by ten than dense sand is
-SHEARED, STILL, NARROW = 5e-3, 0.6, 0.05  # at this shear strain sand has less of G_max left, and more damping
-SMALL, LOST = 5e-5, 0.5  # and up to this one it keeps more of G_max
-EARLY = 0.025  # axial strain up to which half of the strength tells that sand still contracts
+WEAK, FALLEN = 0.75, 0.15  # shares of the strength, and of the fall of eps_v that has happened by then: see _check_volume
 SLOPE_MISFIT = 0.5  # share of eps_v by which e may contradict it before the signs are doubted
 DILATES = 1e-3  # volumetric strain below its negative is dilatancy, not scatter
 
@@ -261,10 +265,12 @@ def _test(
         if head.quantity in STRAINS:
             _check_percent(place, name, kind, head, given, numbers)
         values = head.inside(given)
-        if head.quantity in ("q", "p", "p_0", "sigma_a", "sigma_r") and not TOO_SMALL <= np.max(np.abs(values)) <= TOO_LARGE:
+        least = TOO_SMALL if head.quantity != "p_0" else SMALLEST_START if not head.unit else 0.0
+        if head.quantity in ("q", "p", "p_0", "sigma_a", "sigma_r") and not least <= np.max(np.abs(values)) <= TOO_LARGE:
             raise InputError(
                 f"{where}: the largest {head.title} is {np.max(np.abs(given)):g}; stresses are in kPa unless the "
-                "name says _MPa or _Pa, and a test of soil reaches between 2 kPa and 100 MPa"
+                "name says _MPa or _Pa, and a test of soil reaches between "
+                + ("0.5 kPa (less: call the column p_0_kPa) and 100 MPa" if head.quantity == "p_0" else "2 kPa and 100 MPa")
             )
         if head.quantity == "amplitude" and words["cycle_by"] in ("eps_a", "gamma") and head.unit not in ("", "percent"):
             raise InputError(f"{where}: an amplitude of {words['cycle_by']} is a strain, not a stress")
@@ -297,6 +303,7 @@ def _test(
     if len(test.lines) < FEWEST_ROWS[kind]:
         raise InputError(f"{where}: {len(test.lines)} rows; a {kind} test needs at least {FEWEST_ROWS[kind]}")
     _check_values(place, test)
+    _check_sizes(where, test, {head.quantity: head.unit for head in heads})
     if kind == "liquefaction":
         test.columns["log_N"] = np.log10(test["N"])
     if kind == "drained":
@@ -367,12 +374,13 @@ def _check_values(place: str, test: LaboratoryTest) -> None:
     def first(bad: np.ndarray) -> str:
         return f"{place}:{test.lines[int(np.argmax(bad))]}: test {test.name}"
 
-    for quantity, low, high, hint in RANGES:
+    for quantity, low, high, below, above in RANGES:
         if quantity in test:
             bad = (test[quantity] < low) | (test[quantity] > high)
             if bad.any():
                 value = test[quantity][int(np.argmax(bad))]
-                raise InputError(f"{first(bad)}: {quantity} = {value:g}, allowed {low:g} to {high:g} ({hint})")
+                hint = below if value < low else above
+                raise InputError(f"{first(bad)}: {quantity} = {value:g}, allowed {low:g} to {high:g}{hint}")
     if test.kind in ("drained", "undrained"):
         strain, q = test["eps_a"], test["q"] if "q" in test else test["stress_ratio"] - 1
         way = np.sign(strain[-1] - strain[0])
@@ -391,34 +399,56 @@ def _check_values(place: str, test: LaboratoryTest) -> None:
             raise InputError(f"{where}: {quantity} is negative: compression is positive")
     _check_stress(where, test)
     _check_volume(where, test)
-    _check_sizes(where, test)
 
 
-def _check_sizes(where: str, test: LaboratoryTest) -> None:
-    """Sizes that no soil has, by which another unit shows."""
-    if test.kind == "stiffness" and np.max(test["G_max"]) < SOFTEST:
+def _check_sizes(where: str, test: LaboratoryTest, units: dict[str, str]) -> None:
+    """Sizes that no soil has, by which another unit shows. units : of the table's heads; one that is written is doubted only
+    where it is per cent."""
+    if test.kind == "stiffness" and not units["G_max"] and np.max(test["G_max"]) < SOFTEST:
         raise InputError(
-            f"{where}: the largest G_max is {np.max(test['G_max']):g} kPa, that of sand is larger than {SOFTEST:g}: in MPa call "
-            "the column G_max_MPa"
+            f"{where}: the largest G_max is {np.max(test['G_max']):g}, and the name has no unit: in MPa call the column G_max_MPa, "
+            "in kPa G_max_kPa"
         )
-    if test.kind == "retention" and np.max(test["suction"]) < DRAINS:
+    if test.kind == "retention" and not units["suction"] and np.max(test["suction"]) < DRAINS:
         raise InputError(
-            f"{where}: the largest suction is {np.max(test['suction']):g} kPa, less than {DRAINS:g} (3 cm of water): suction is in "
-            "kPa unless the name says suction_MPa, suction_bar or suction_m"
+            f"{where}: the largest suction is {np.max(test['suction']):g}, and the name has no unit: call the column suction_MPa, "
+            "suction_bar or suction_m, and in kPa suction_kPa"
         )
     if test.kind == "modulus":
-        ratio, damping = (test[name] if name in test else np.full(len(test.lines), np.nan) for name in ("G_ratio", "damping"))
-        bad = (test["gamma"] >= SHEARED) & ((ratio > STILL) | (damping < NARROW))
-        if bad.any():
+        _check_modulus(where, test, units)
+    if test.kind in ("oedometer", "isotropic") and "e" not in units:  # rounded void ratios tell nothing
+        stress = test["sigma_a" if test.kind == "oedometer" else "p"]
+        first, last = int(np.argmin(stress[: int(np.argmax(stress)) + 1])), int(np.argmax(stress))
+        strain = (test["e"][first] - test["e"][last]) / (1 + test["e_0"][first])
+        if stress[last] >= 4 * stress[first] and strain < COMPRESSES * (np.sqrt(stress[last]) - np.sqrt(stress[first])):
             raise InputError(
-                f"{where}: gamma is {test['gamma'][int(np.argmax(bad))]:g} where more than {STILL:g} of G_max is left, or damping "
-                f"is below {NARROW:g}; sand is strained less there: in per cent call the column gamma_percent"
+                f"{where}: from {stress[first]:g} to {stress[last]:g} kPa it is compressed by {100 * strain:.2g} per cent, ten "
+                "times less than dense sand: are strains fractions (call the column eps_a, eps_v), or stresses in Pa (sigma_a_Pa)?"
             )
-        if np.max(test["gamma"]) <= SMALL and np.min(np.nan_to_num(ratio, nan=1.0)) < LOST:
-            raise InputError(
-                f"{where}: half of G_max is lost though gamma ends at {np.max(test['gamma']):g}: if it is a fraction call the "
-                "column gamma"
-            )
+
+
+def _check_modulus(where: str, test: LaboratoryTest, units: dict[str, str]) -> None:
+    """Shear strain against the modulus that is left, or against damping where the modulus is not given."""
+    gamma = test["gamma"]
+    if "damping" in test and units["damping"] == "percent" and np.max(gamma) >= DAMPED and np.max(test["damping"]) < LEAST:
+        raise InputError(
+            f"{where}: damping stays below {100 * LEAST:g} per cent though gamma reaches {np.max(gamma):g}: if damping is a "
+            "fraction call its column damping; if gamma is in per cent call it gamma_percent"
+        )
+    stiff = test["G_ratio"] > STILL if "G_ratio" in test else test["damping"] < NARROW
+    bad = (gamma >= SHEARED) & stiff
+    if bad.any() and not units["gamma"]:
+        said = f"more than {STILL:g} of G_max is left" if "G_ratio" in test else f"damping is below {NARROW:g}"
+        raise InputError(
+            f"{where}: gamma is {gamma[int(np.argmax(bad))]:g} where {said}, and the name has no unit: in per cent call the column "
+            "gamma_percent, as a fraction gamma_fraction"
+        )
+    lost = (gamma <= SMALL) & (test["G_ratio"] < LOST) if "G_ratio" in test else np.array([False])
+    if lost.any() and units["gamma"] == "percent":
+        raise InputError(
+            f"{where}: half of G_max is lost at gamma = {gamma[int(np.argmax(lost))]:g}, as a fraction: if the table gives "
+            "fractions call the column gamma"
+        )
 
 
 def _check_stress(where: str, test: LaboratoryTest) -> None:
@@ -444,12 +474,6 @@ def _check_stress(where: str, test: LaboratoryTest) -> None:
             raise InputError(
                 f"{where}: e grows from {test['e'][first]:g} to {test['e'][last]:g} while the stress grows from "
                 f"{stress[first]:g} to {stress[last]:g} kPa: are the rows in the order of the test, and is e the void ratio?"
-            )
-        strain = (test["e"][first] - test["e"][last]) / (1 + test["e"][first])
-        if stress[last] >= 2 * stress[first] and strain < COMPRESSES * (np.sqrt(stress[last]) - np.sqrt(stress[first])):
-            raise InputError(
-                f"{where}: from {stress[first]:g} to {stress[last]:g} kPa it is compressed by {100 * strain:.2g} per cent, ten "
-                "times less than dense sand: are strains fractions (call the column eps_a, eps_v), or stresses in Pa (sigma_a_Pa)?"
             )
     if test.kind == "retention":
         driest, wettest = int(np.argmax(test["suction"])), int(np.argmin(test["suction"]))
@@ -486,12 +510,15 @@ def _check_volume(where: str, test: LaboratoryTest) -> None:
             f"{where}: eps_v stays within {100 * np.max(np.abs(change)):.2g} per cent over a whole drained test; if it is a "
             "fraction call the column eps_v"
         )
-    q = np.abs(test["q"] if "q" in test else test["stress_ratio"] - 1)
-    half = int(np.argmax(q >= 0.5 * np.max(q)))
-    if abs(test["eps_a"][half]) <= EARLY and change[half] < -DILATES:
+    # Dense sand dilates fastest near its peak; a loose sample whose sign is swapped falls fastest where it begins.
+    strain, q = test["eps_a"] - test["eps_a"][0], test["q"] if "q" in test else test["stress_ratio"] - 1
+    peak = int(np.argmax(q))
+    half = int(np.argmax(q >= 0.5 * q[peak]))
+    large = change[half] < min(-DILATES, FALLEN * np.min(change))
+    if strain[-1] > 0 and q[half] <= WEAK * q[peak] and large and change[half] * strain[peak] < change[peak] * strain[half]:
         raise InputError(
-            f"{where}: eps_v has fallen by {-change[half]:.3g} where q has come to half of its largest value: sand contracts "
-            "before it dilates, so the sign of eps_v is swapped; compression is positive"
+            f"{where}: eps_v has fallen by {-change[half]:.3g} where q has come to half of its largest value, and falls more "
+            "slowly from there on: sand contracts before it dilates, so the sign of eps_v is swapped; compression is positive"
         )
     lowest, highest = int(np.argmin(change)), int(np.argmax(change))
     if change[lowest] < -DILATES and change[highest] > DILATES and lowest < highest and test["eps_a"][-1] > 0:
