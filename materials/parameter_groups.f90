@@ -73,7 +73,7 @@ contains
       call apply_group(group, props, title, doubt, ranges, fault)
       if (present(tested)) tested = ranges
       if (place == 0 .or. fault%code /= 0) return
-      if (doubt == '') call look_behind_switches(groups(1), props, doubt)
+      if (doubt == '') call look_behind_switches(own, props, doubt)
       do i = 1, group%count
          if (property_index(group%entries(i)%key) > 0) return
       end do
