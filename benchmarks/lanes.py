@@ -108,6 +108,7 @@ def main():
     text = table(measured(given.rounds, given.threads), given.threads) + f"\n\n{model[0]}, {len(model)} processors; load before the run {load:.1f}.\n"
     print(text)
     if given.results:
+        given.results.mkdir(parents=True, exist_ok=True)
         (given.results / "lanes.md").write_text(HEAD + text, encoding="utf-8")
 
 
