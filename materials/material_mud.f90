@@ -231,7 +231,7 @@ contains
       type(response_t), intent(inout) :: response
       real(wp), intent(inout), contiguous :: new_state(:, :)
       type(batch_report_t), intent(out) :: report
-      type(mud_report) :: of_point(MOST_POINTS)
+      type(mud_report) :: of_point
       type(mud_blocks) :: blocks
       real(wp) :: stress_(6), ends(MOST_POINTS)
       real(wp), allocatable :: state_(:)   !< With fading alone.
@@ -241,46 +241,41 @@ contains
       kind = MUD_TANGENT_NONE
       if (with_tangent) kind = self%tangent
       ends(:n) = suction(:n) + d_suction(:n)
-      if (self%lanes) call update_side_by_side(self, n, stress, state, strain, ends, kind, response, new_state, &
-                                               of_point)
+      if (self%lanes) then
+         call update_side_by_side(self, n, stress, state, strain, ends, kind, response, new_state, report)
+         return
+      end if
       if (self%fade < 1.0_wp) allocate (state_(size(state, 1)))
       do g = 1, n
-         if (self%lanes) then
-            code = of_point(g)%status
-         else if (self%fade < 1.0_wp) then
+         if (self%fade < 1.0_wp) then
             call faded(self, stress(:, g), state(:, g), stress_, state_)
             code = mud_update(self%prepared, stress_, state_, self%n_state, strain(:, g), ends(g), kind, &
-                              response%stress(:, g), new_state(:, g), blocks, of_point(g))
+                              response%stress(:, g), new_state(:, g), blocks, of_point)
          else
             code = mud_update(self%prepared, stress(:, g), state(:, g), self%n_state, strain(:, g), ends(g), kind, &
-                              response%stress(:, g), new_state(:, g), blocks, of_point(g))
+                              response%stress(:, g), new_state(:, g), blocks, of_point)
          end if
-         if (with_tangent .and. code == 0 .and. .not. self%lanes) then
+         call take_point(self, g, code, of_point, new_state(:, g), response, report)
+         if (code /= 0) return
+         if (with_tangent) then
             response%dsig_deps(:, :, g) = blocks%dsig_deps
             response%dsig_dpc(:, g) = blocks%dsig_dpc
             response%dsw_dev(g) = blocks%dsw_deps(1)   ! the normal components are equal, those of shear are zero
             response%dsw_dpc(g) = blocks%dsw_dpc
          end if
-         call add_up(of_point(g), report)
-         if (code /= 0) then
-            report%code = code
-            report%point = g
-            return
-         end if
-         response%void_ratio(g) = new_state(self%place_e, g)
-         response%s_w(g) = new_state(self%place_s_w, g)
       end do
    end subroutine update
 
-   !> The updates of a batch by the library's own, and what they report; a point that fails leaves the others alone.
-   subroutine update_side_by_side(self, n, stress, state, strain, suction, kind, response, new_state, reports)
+   !> The updates of a batch by the library's own; a point that fails leaves the others alone.
+   subroutine update_side_by_side(self, n, stress, state, strain, suction, kind, response, new_state, report)
       class(mud_t), intent(in) :: self
       integer, intent(in) :: n
       real(wp), intent(in), contiguous, target :: stress(:, :), state(:, :), strain(:, :), suction(:)
       integer(c_int), intent(in) :: kind
       type(response_t), intent(inout), target :: response
       real(wp), intent(inout), contiguous, target :: new_state(:, :)
-      type(mud_report), intent(inout), contiguous, target :: reports(:)
+      type(batch_report_t), intent(inout) :: report
+      type(mud_report), target :: reports(MOST_POINTS)
       type(mud_points) :: points
       real(wp), target :: stress_(6, MOST_POINTS), slopes(6, MOST_POINTS)
       real(wp), allocatable, target :: state_(:, :)   !< With fading alone.
@@ -307,11 +302,20 @@ contains
       call ieee_set_flag(ieee_usual, .false.)
       call ieee_set_halting_mode(ieee_usual, halting)
       response%dsw_dev(:n) = slopes(1, :n)   ! the normal components are equal, those of shear are zero
+      do g = 1, n
+         call take_point(self, g, reports(g)%status, reports(g), new_state(:, g), response, report)
+         if (report%code /= 0) return
+      end do
    end subroutine update_side_by_side
 
-   !> Adds the work of a point; what a failure is about is that of the last one.
-   pure subroutine add_up(report, sums)
+   !> Void ratio and saturation of a point, and its work added; what a failure is about is that of the last one.
+   pure subroutine take_point(self, point, code, report, state, response, sums)
+      class(mud_t), intent(in) :: self
+      integer, intent(in) :: point
+      integer(c_int), intent(in) :: code   !< Status that its update returned.
       type(mud_report), intent(in) :: report
+      real(wp), intent(in) :: state(:)
+      type(response_t), intent(inout) :: response
       type(batch_report_t), intent(inout) :: sums
 
       sums%n_rate = sums%n_rate + report%n_rate
@@ -327,7 +331,14 @@ contains
       sums%lower = report%lower
       sums%upper = report%upper
       sums%reached = report%reached
-   end subroutine add_up
+      if (code /= 0) then
+         sums%code = code
+         sums%point = point
+         return
+      end if
+      response%void_ratio(point) = state(self%place_e)
+      response%s_w(point) = state(self%place_s_w)
+   end subroutine take_point
 
    subroutine message(self, report, text)
       class(mud_t), intent(in) :: self
