@@ -225,6 +225,8 @@ def strip():
     scene = here/"scenes/strip.nml"
     got = solid("strip", scene, "--thickness", "0.25", "--cells", "tetrahedra", "--no-fields")
     near("strip", got, host("strip_host", scene), ("centre.u_z", "below.u_z", "below.p_w"), HOST)
+    same("strip: points side by side", solid("strip_lanes", scene, "--thickness", "0.25", "--cells", "tetrahedra",
+                                             "--no-fields", "--lanes"), got)
 
 
 def indentation():

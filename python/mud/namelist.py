@@ -31,6 +31,29 @@ def quoted(text: str, longest: int | None = None) -> str:
     return mark + plain.replace(mark, 2 * mark) + mark
 
 
+def tokens_of(text: str, path: str | os.PathLike) -> list[tuple[int, re.Match[str]]]:
+    """Line numbers and matches of TOKEN: marks, words and texts, without comments. ``path`` is told in errors."""
+    tokens = []
+    for number, line in enumerate(text.splitlines(), 1):
+        for match in TOKEN.finditer(line):
+            if match["open"]:
+                raise InputError(f"{path}:{number}: a quoted text is not closed; add {match['open']}")
+            tokens += [(number, match)] if match.lastgroup not in (None, "comment") else []
+    return tokens
+
+
+def word_of(value: re.Match[str]) -> str:
+    """A word, or a text as it is meant between its quotes."""
+    mark = value["text"][0] if value["text"] else ""
+    return value["text"][1:-1].replace(2 * mark, mark) if mark else value["word"]
+
+
+def value_of(value: re.Match[str]) -> float | str:
+    """A number where the word or text is one, as the readers of texts take it, else the word."""
+    word = word_of(value)
+    return float(word.lower().replace("d", "e")) if NUMBER.fullmatch(word) else word
+
+
 def read_material(path: str | os.PathLike) -> dict[str, float | str]:
     """Entries of a material file by name: numbers, words, and the texts ``name`` and ``reference``."""
     path = pathlib.Path(path)
@@ -38,12 +61,7 @@ def read_material(path: str | os.PathLike) -> dict[str, float | str]:
         text, _ = text_of_bytes(path.read_bytes())
     except OSError as problem:
         raise InputError(f"{path} cannot be read: {problem.strerror}") from problem
-    tokens = []
-    for number, line in enumerate(text.splitlines(), 1):
-        for match in TOKEN.finditer(line):
-            if match["open"]:
-                raise InputError(f"{path}:{number}: a quoted text is not closed; add {match['open']}")
-            tokens += [(number, match)] if match.lastgroup not in (None, "comment") else []
+    tokens = tokens_of(text, path)
     marks = [match["mark"] for _, match in tokens]
     if marks.count("&") != 1 or marks[0] != "&" or (tokens[1][1]["word"] or "").lower() != "material" or marks[-1] != "/":
         raise InputError(f"{path}: a material file holds exactly one group, &material ... /")
@@ -57,9 +75,8 @@ def read_material(path: str | os.PathLike) -> dict[str, float | str]:
         name = key["word"]
         if name.lower() in map(str.lower, entries):
             raise InputError(f"{path}:{number}: {name} is given twice")
-        word = value["text"][1:-1].replace(2 * value["text"][0], value["text"][0]) if value["text"] else value["word"]
         if name.lower() in TEXTS:
-            entries[name.lower()] = word
+            entries[name.lower()] = word_of(value)
         else:
-            entries[name] = float(word.lower().replace("d", "e")) if NUMBER.fullmatch(word) else word
+            entries[name] = value_of(value)
     return entries

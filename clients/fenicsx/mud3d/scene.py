@@ -72,22 +72,19 @@ class SceneError(Exception):
     pass
 
 
-def _tokens(text):
-    lines = (namelist._without_comment(line) for line in text.splitlines())
-    return [match for line in lines for match in namelist.TOKEN.finditer(line)]
-
-
 def _value(match):
-    """A number, a word, or a text as it stands between quotes."""
-    return match["text"][1:-1] if match["text"] else namelist._number(match["word"])
+    """A number, a word, or a text as it is meant between its quotes, which is never a number."""
+    return namelist.word_of(match) if match["text"] else namelist.value_of(match)
 
 
 def _groups(path):
     """(group, {key: list of values}) in the order of the file."""
     try:
-        tokens = [t for t in _tokens(pathlib.Path(path).read_text()) if t["mark"] or t["word"] or t["text"]]
+        tokens = [match for _, match in namelist.tokens_of(pathlib.Path(path).read_text(), path)]
     except OSError as problem:
         raise SceneError(f"{path} cannot be read: {problem.strerror}") from problem
+    except mud.InputError as problem:
+        raise SceneError(str(problem)) from problem
     found, i = [], 0
     while i < len(tokens):
         if tokens[i]["mark"] != "&" or i + 1 == len(tokens):
