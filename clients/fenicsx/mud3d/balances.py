@@ -17,12 +17,15 @@ class Scheme:
     kind: str
     rho_inf: float
     dt: float
+    begins: bool = False   # The rates before say nothing of those to come: section 4.2.
 
     def __post_init__(self):
         rho = self.rho_inf
         self.gamma, self.beta = (3.0 - rho)/(2.0*(1.0 + rho)), 1.0/(1.0 + rho)**2
         self.l_f, self.l_a = 1.0/(1.0 + rho), (2.0 - rho)/(1.0 + rho)
         self.l_p, self.gamma_1 = (3.0 - rho)/(2.0*(1.0 + rho)), 1.0/(1.0 + rho)
+        if self.kind == QUASI_STATIC and self.begins:
+            self.l_p = self.gamma_1 = 1.0
         if self.kind == STATIC:
             self.l_f = 1.0
         self.l_v = self.l_f if self.kind == DYNAMIC else self.l_p

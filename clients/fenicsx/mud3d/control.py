@@ -147,7 +147,7 @@ class Controller:
     def accept(self, scheme, x1, v1, a1):
         run = self.run
         if not self.controlled:
-            self.good += 1
+            self.good, self.fresh = self.good + 1, self.fresh + 1
             if self.factor < 1.0 and self.good >= 2:
                 self.factor, self.good = min(1.0, 2.0*self.factor), 0
             elif self.factor == 1.0:

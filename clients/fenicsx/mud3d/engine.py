@@ -285,7 +285,7 @@ class Run:
             dt = self.controller.next(self.time, end)
             if dt < LEAST_STEP*stage.duration or cuts > stage.cuts:
                 raise Stopped(f"stage {stage.name}, time {self.time:.6g} s: no step of {dt:.3g} s goes through: {why}")
-            scheme = Scheme(stage.analysis, self.rho_inf, dt)
+            scheme = Scheme(stage.analysis, self.rho_inf, dt, begins=self.controller.fresh == 0)
             self.controller.move_rates(scheme)
             try:
                 iterations, x1, v1, a1 = self._newton(scheme)
