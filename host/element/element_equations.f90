@@ -9,9 +9,8 @@ module element_equations
    use element_sums, only: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, &
                            residual_of, matrix_of
    use porous_domain, only: domain_t, region_t, model_state_t, gauss_t, mixture_density, given_pressures_at, &
-                            gravity_on, COUPLED
-   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
-                             U
+                            gravity_on, law_of, COUPLED
+   use porous_balance, only: kinematics_t, pore_t, point_response, PLACES, RR, TT, RZ, U
    use generalised_alpha, only: scheme_t
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
@@ -78,7 +77,7 @@ contains
    !> of `new`. Where a strain of the step is beyond 1 or the material refuses, block%report says why; the response is
    !> then of no use.
    subroutine update_block(domain, scheme, old, new, with_tangent, slopes, block, points)
-      type(domain_t), intent(in) :: domain
+      type(domain_t), intent(in), target :: domain
       type(scheme_t), intent(in) :: scheme
       type(model_state_t), intent(in), target :: old
       type(model_state_t), intent(inout), target :: new
@@ -89,7 +88,9 @@ contains
       real(wp), dimension(MOST_POINTS) :: suction, d_suction
       real(wp) :: strain(6, MOST_POINTS)
       real(wp), pointer, contiguous :: before(:, :), after(:, :)   !< (n_state, points) of the law
-      integer :: e, first, g, last, n, n_state, region
+      class(material_t), pointer :: law
+      real(wp) :: t0
+      integer :: e, first, g, last, n
 
       block%report = batch_report_t()
       block%soft = .false.
@@ -122,31 +123,19 @@ contains
                             points%response)
          return
       end if
-      region = domain%region_of(block%first)
-      n_state = domain%regions(region)%law%n_state
+      law => law_of(domain, new, domain%region_of(block%first))
       associate (from => domain%before_state(block%first) + 1, to => domain%before_state(block%last + 1))
-         before(1:n_state, 1:n) => old%state(from:to)
-         after(1:n_state, 1:n) => new%state(from:to)
+         before(1:law%n_state, 1:n) => old%state(from:to)
+         after(1:law%n_state, 1:n) => new%state(from:to)
       end associate
-      if (allocated(new%laws)) then
-         call ask(new%laws(region)%law)
-      else
-         call ask(domain%regions(region)%law)
-      end if
-   contains
-      subroutine ask(law)
-         class(material_t), intent(in) :: law
-         real(wp) :: t0
-
-         t0 = clock()
-         call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
-                         with_tangent .or. allocated(slopes%strain), points%response, after, block%report)
-         call add_elapsed(block%seconds, t0)
-         if (block%report%code /= 0) return
-         if (allocated(slopes%strain)) call keep_slopes(n, first, points%response, slopes)
-         if (with_tangent .and. block%fallback /= NO_FALLBACK) call replace_soft_tangents(law, block%fallback, n, &
-            after, suction(:n) + d_suction(:n), points%response, block%soft)
-      end subroutine ask
+      t0 = clock()
+      call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
+                      with_tangent .or. allocated(slopes%strain), points%response, after, block%report)
+      call add_elapsed(block%seconds, t0)
+      if (block%report%code /= 0) return
+      if (allocated(slopes%strain)) call keep_slopes(n, first, points%response, slopes)
+      if (with_tangent .and. block%fallback /= NO_FALLBACK) call replace_soft_tangents(law, block%fallback, n, &
+         after, suction(:n) + d_suction(:n), points%response, block%soft)
    end subroutine update_block
 
    !> Evaluates strains, pressures and their rates at the points of an element from the values at its nodes.
@@ -218,7 +207,6 @@ contains
       type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
-      type(skeleton_t) :: skeleton
       type(pore_t) :: pore
       type(sums_t) :: sums
       type(rows_t) :: rows
@@ -235,24 +223,13 @@ contains
       do g = 1, domain%rule
          p = (element - 1)*domain%rule + g
          q = (element - block%first)*domain%rule + g
-         skeleton%stress = points%response%stress(1:4, q)
-         skeleton%e = points%response%void_ratio(q)
-         skeleton%s = points%response%s_w(q)
-         if (with_tangent) then
-            skeleton%tangent = points%response%dsig_deps(1:4, 1:4, q)
-            skeleton%tangent_suction = points%response%dsig_dpc(1:4, q)
-            skeleton%ds_dev = points%response%dsw_dev(q)
-            skeleton%ds_dpc = points%response%dsw_dpc(q)
-         else
-            skeleton%ds_dev = 0.0_wp
-            skeleton%ds_dpc = 0.0_wp
-         end if
          associate (gp => domain%gauss(g, element), k => points%k(q), &
                     region => domain%regions(domain%region_of(element)))
+            call point_response(domain, region, scheme, k, old%stress(:, p), points%response, q, &
+                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, drift)
+            new%stress(:, p) = points%response%stress(:, q)
+            new%e(p) = pore%e
             if (region%with_w) then
-               call point_response(domain, region, scheme, k, old%stress(:, p), skeleton, &
-                                   pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, &
-                                   drift)
                new%s(p) = pore%s
                new%s_rate(p) = pore%s_rate
                rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
@@ -260,18 +237,13 @@ contains
                   out%stretch([LAST_U + i, LAST_U + n_p + i]) = out%stretch([LAST_U + i, LAST_U + n_p + i]) &
                      + rate*abs(gp%m(i)) + gp%weight*matmul(abs(gp%dm(i, :)), drift)
                end do
-            else
-               call solid_response(region, scheme, k, old%stress(:, p), skeleton, old%e(p), with_tangent, response, &
-                                   tangent)
             end if
-            new%stress(:, p) = points%response%stress(:, q)
-            new%e(p) = skeleton%e
             rows = weighted_rows(gp)
             call add_response(rows, n_fields, response, sums%r)
             if (out%with_change) call add_forces(rows, &
                change_of(domain, region, k, gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), response), &
                change)
-            if (scheme%has_inertia) call add_flight_scale(domain, region, k, scheme, skeleton, gp, out%stretch)
+            if (scheme%has_inertia) call add_flight_scale(domain, region, k, scheme, pore, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, rows, n_fields, tangent, sums%k)
          end associate
       end do
@@ -282,18 +254,18 @@ contains
    end subroutine add_element
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
-   pure subroutine add_flight_scale(domain, region, k, scheme, skeleton, gp, stretch)
+   pure subroutine add_flight_scale(domain, region, k, scheme, pore, gp, stretch)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
       type(scheme_t), intent(in) :: scheme
-      type(skeleton_t), intent(in) :: skeleton
+      type(pore_t), intent(in) :: pore   !< At the end of the step.
       type(gauss_t), intent(in) :: gp
       real(wp), intent(inout) :: stretch(:)
       real(wp) :: force, part
       integer :: i
 
-      force = mixture_density(domain, region, skeleton%e/(1 + skeleton%e), skeleton%s) &
+      force = mixture_density(domain, region, pore%e/(1 + pore%e), pore%s) &
               *(k%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
       do i = 1, size(gp%n)
          part = gp%weight*force*abs(gp%n(i))

@@ -15,7 +15,7 @@ module porous_domain
    private
    public :: domain_t, region_t, fluids_t, gauss_t, model_state_t, source_i, prepare_domain, new_state_of, copy_state, &
              take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
-             keep_element_state, exchange_state
+             keep_element_state, exchange_state, law_of
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
    integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.
@@ -290,6 +290,17 @@ contains
       is_present = .true.
       if (allocated(state%present)) is_present = state%present(element)
    end function is_present
+
+   !> Law of a region in the step that ends with a state: that of the step where laws change with time.
+   function law_of(domain, state, region) result(law)
+      type(domain_t), intent(in), target :: domain
+      type(model_state_t), intent(in), target :: state
+      integer, intent(in) :: region   !< Number of the region.
+      class(material_t), pointer :: law
+
+      law => domain%regions(region)%law
+      if (allocated(state%laws)) law => state%laws(region)%law
+   end function law_of
 
    !> Gravity on an element, towards -z: that of new ground grows over its first stage [m/s2].
    pure real(wp) function gravity_on(state, element) result(gravity)

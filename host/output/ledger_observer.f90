@@ -101,7 +101,7 @@ contains
          call book_step(force, run, self%damping_stress, ledger)
          call book_creation(run%scheme, stage%tolerance, run%model%dofs, run%assembly%scale, run%next%x - run%state%x, &
                             ledger)
-         self%indicators = indicators_of(run)
+         self%indicators = indicators_of(run, ledger%kinetic)
          run%news%contact_work = ledger%contact
          if (.not. has_inertia(stage%kind)) return
          ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, &
