@@ -126,7 +126,7 @@ contains
          allocate (at%rhs(dofs%n), at%dx(dofs%n))
          at%guessed = .not. control%no_predictor
          new%time = old%time + scheme%dt
-         call begin_passes(scheme, solution%constraint, control, assembly)
+         call begin_passes(scheme, control, solution)
          ! Laws that change over the step are its own.
          call follow_newton(control%tolerance, domain%regions)
          at%rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
@@ -199,8 +199,7 @@ contains
             log%outcome = MATERIAL_FAILED
             return
          end if
-         call add_what_acts(dofs, pattern, scheme, solution%constraint, old, new, at%with_slopes, at%touched, &
-                            assembly, system, at%rhs, at%t0)
+         call add_what_acts(dofs, scheme, at%with_slopes, at%touched, solution, at%rhs, at%t0)
          assembly%unresolved = at%rounded(1)/tolerance
          if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1)) &
                                                                /tolerance
@@ -260,12 +259,11 @@ contains
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
-      associate (system => solution%system, constraint => solution%constraint, assembly => solution%assembly, &
-                 scheme => solution%scheme, tolerance => solution%newton%tolerance)
-         system%rounding = rounding_in(scheme%has_inertia)/tolerance*asked_for(dofs, at%rhs)
+      associate (system => solution%system, assembly => solution%assembly, tolerance => solution%newton%tolerance)
+         system%rounding = rounding_in(solution%scheme%has_inertia)/tolerance*asked_for(dofs, at%rhs)
          system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
-            rounding_of_saturation(domain, dofs, constraint, solution%state, scheme)/tolerance)
-         at%rounded = rounding_of_unknowns(dofs, solution%pattern, constraint, assembly%values, solution%next%x)
+                                       rounding_of_saturation(domain, dofs, solution)/tolerance)
+         at%rounded = rounding_of_unknowns(dofs, solution)
          system%rounding = max(system%rounding, at%rounded/tolerance)
          assembly%unresolved = max(assembly%unresolved, at%rounded(1)/tolerance)
       end associate
@@ -313,32 +311,32 @@ contains
    end function needs_stiffness
 
    !> Sets what the passes of a step over the elements are asked for.
-   pure subroutine begin_passes(scheme, constraint, control, assembly)
+   pure subroutine begin_passes(scheme, control, solution)
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
       type(control_t), intent(in) :: control
-      type(assembly_t), intent(inout) :: assembly
+      type(solution_t), intent(inout) :: solution
 
-      assembly%air = constraint%air
-      assembly%with_change = control%measure == BY_CHANGE
-      assembly%rounding_share = merge(rounding_in(scheme%has_inertia)/control%tolerance, 0.0_wp, assembly%with_change)
-      assembly%fallback = NO_FALLBACK
-      call follow_slopes_first(assembly)
+      associate (assembly => solution%assembly)
+         assembly%air = solution%constraint%air
+         assembly%with_change = control%measure == BY_CHANGE
+         assembly%rounding_share = merge(rounding_in(scheme%has_inertia)/control%tolerance, 0.0_wp, &
+                                         assembly%with_change)
+         assembly%fallback = NO_FALLBACK
+         call follow_slopes_first(assembly)
+      end associate
    end subroutine begin_passes
 
    !> Error that the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the
    !> free balances of air [m3/s]. docs/theory/host.md section 5.1.
-   pure real(wp) function rounding_of_saturation(domain, dofs, constraint, state, scheme) result(rounding)
+   pure real(wp) function rounding_of_saturation(domain, dofs, solution) result(rounding)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      type(model_state_t), intent(in) :: state
-      type(scheme_t), intent(in) :: scheme
+      type(solution_t), intent(in) :: solution
       real(wp) :: pores(dofs%n)
       integer :: e, g, i, p, at, n_p
 
       rounding = 0.0_wp
-      if (.not. domain%with_c .or. .not. scheme%has_rates) return
+      if (.not. domain%with_c .or. .not. solution%scheme%has_rates) return
       pores = 0.0_wp
       do e = 1, size(domain%mesh%t6, 2)
          n_p = domain%n_carriers(e)
@@ -348,83 +346,81 @@ contains
             if (at == 0) cycle
             do g = 1, domain%rule
                p = (e - 1)*domain%rule + g
-               associate (gp => domain%gauss(g, e))
-                  pores(at) = pores(at) + gp%weight*abs(gp%m(i))*state%e(p)/(1 + state%e(p))
+               associate (gp => domain%gauss(g, e), ratio => solution%state%e(p))
+                  pores(at) = pores(at) + gp%weight*abs(gp%m(i))*ratio/(1 + ratio)
                end associate
             end do
          end do
       end do
-      rounding = epsilon(1.0_wp)/scheme%dt*norm2(pack(pores, .not. constraint%fixed))
+      rounding = epsilon(1.0_wp)/solution%scheme%dt*norm2(pack(pores, .not. solution%constraint%fixed))
    end function rounding_of_saturation
 
    !> Change of the balances by a rounding of every unknown, by the entries of the matrix: the norms over the free rows
    !> of every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces. Of
    !> displacements [kN], of pressures [m3/s]. docs/theory/host.md section 5.1.
-   pure function rounding_of_unknowns(dofs, pattern, constraint, values, x) result(rounding)
+   pure function rounding_of_unknowns(dofs, solution) result(rounding)
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: values(:)   !< Entries of the matrix, in the order of the pattern.
-      real(wp), intent(in) :: x(:, :)     !< (FIELDS, nodes) [m, kPa]
+      type(solution_t), intent(in) :: solution
       real(wp) :: rounding(FIELDS)
       real(wp) :: row
       integer :: i, place, j
 
       rounding = 0.0_wp
-      do i = 1, dofs%n
-         if (constraint%fixed(i)) cycle
-         row = 0.0_wp
-         do place = pattern%row(i), pattern%row(i + 1) - 1
-            j = pattern%col(place)
-            row = row + abs(values(place)*x(dofs%field(j), dofs%node(j)))
+      associate (pattern => solution%pattern, values => solution%assembly%values, x => solution%next%x)
+         do i = 1, dofs%n
+            if (solution%constraint%fixed(i)) cycle
+            row = 0.0_wp
+            do place = pattern%row(i), pattern%row(i + 1) - 1
+               j = pattern%col(place)
+               row = row + abs(values(place)*x(dofs%field(j), dofs%node(j)))
+            end do
+            rounding(dofs%field(i)) = rounding(dofs%field(i)) + row**2
          end do
-         rounding(dofs%field(i)) = rounding(dofs%field(i)) + row**2
-      end do
+      end associate
       rounding(:DISPLACEMENTS) = sum(rounding(:DISPLACEMENTS))
       rounding = ROUNDINGS*epsilon(1.0_wp)*sqrt(rounding)
    end function rounding_of_unknowns
 
    !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in rhs.
-   subroutine add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
+   subroutine add_what_acts(dofs, scheme, slopes, touched, solution, rhs, t0)
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
       real(wp), allocatable, intent(in) :: touched(:)   !< Forces of contacts before the step, if they are asked for.
-      type(assembly_t), intent(inout) :: assembly
-      type(system_t), intent(inout) :: system
+      type(solution_t), intent(inout) :: solution
       real(wp), intent(out) :: rhs(:)
       real(wp), intent(inout) :: t0
       real(wp), allocatable :: without(:)   !< The residual without contacts.
 
-      call add_forces(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-      allocate (without(merge(dofs%n, 0, allocated(touched))))
-      if (allocated(touched)) without(:) = assembly%residual
-      if (allocated(system%contacts)) then
-         call add_elapsed(system%seconds(T_REST), t0)
-         call system%contacts%add(pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, assembly%values)
-         call add_elapsed(system%seconds(T_CONTACT), t0)
-      end if
-      rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
-      call loads_of_water(dofs, constraint%air, rhs)
-      assembly%scale = assembly%scale + abs(rhs)
-      if (allocated(assembly%water)) assembly%water = assembly%water + abs(water_of(dofs, constraint%air, rhs))
-      if (assembly%with_change) then
-         ! What the step changes of loads and contacts, beside that of the elements. An overlap that no solution has
-         ! answered yet presses with the penalty alone, which balances nothing: no more counts than the force that is
-         ! there now.
-         if (allocated(touched)) assembly%change = assembly%change + &
-            min(abs(assembly%residual - without), abs(assembly%residual - without - touched))
-         where (dofs%field <= DISPLACEMENTS)
-            assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
-         elsewhere
-            assembly%change = assembly%scale
-         end where
-      end if
-      rhs = rhs - assembly%residual
-      system%reaction = -rhs
+      associate (assembly => solution%assembly, system => solution%system, constraint => solution%constraint)
+         call add_forces(dofs, scheme, slopes, solution)
+         allocate (without(merge(dofs%n, 0, allocated(touched))))
+         if (allocated(touched)) without(:) = assembly%residual
+         if (allocated(system%contacts)) then
+            call add_elapsed(system%seconds(T_REST), t0)
+            call system%contacts%add(solution%pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
+                                     assembly%values)
+            call add_elapsed(system%seconds(T_CONTACT), t0)
+         end if
+         rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
+         call loads_of_water(dofs, constraint%air, rhs)
+         assembly%scale = assembly%scale + abs(rhs)
+         if (allocated(assembly%water)) assembly%water = assembly%water + abs(water_of(dofs, constraint%air, rhs))
+         if (assembly%with_change) then
+            ! What the step changes of loads and contacts, beside that of the elements. An overlap that no solution has
+            ! answered yet presses with the penalty alone, which balances nothing: no more counts than the force that is
+            ! there now.
+            if (allocated(touched)) assembly%change = assembly%change + &
+               min(abs(assembly%residual - without), abs(assembly%residual - without - touched))
+            where (dofs%field <= DISPLACEMENTS)
+               assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
+            elsewhere
+               assembly%change = assembly%scale
+            end where
+         end if
+         rhs = rhs - assembly%residual
+         system%reaction = -rhs
+      end associate
    end subroutine add_what_acts
 
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
@@ -463,7 +459,7 @@ contains
             log%outcome = MATERIAL_FAILED
             return
          end if
-         call add_forces(dofs, pattern, scheme, held, state, work, .true., assembly)
+         call add_forces(dofs, scheme, .true., solution)
          if (allocated(system%contacts)) call system%contacts%add(pattern, 0.0_wp, .false., assembly%residual, &
                                                                   assembly%scale, assembly%values)
          rhs = held%load_0 - held%offset - assembly%residual
@@ -493,9 +489,8 @@ contains
    logical function unbalanced_forces(domain, dofs, solution, forces) result(good)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
-      type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads.
+      type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads, load_1 become them.
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
-      type(constraint_t) :: held
       type(scheme_t) :: scheme
       real(wp), allocatable :: touched(:)
       real(wp) :: t0
@@ -505,47 +500,46 @@ contains
          t0 = clock()
          allocate (forces(dofs%n), source=0.0_wp)
          scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
-         held = constraint
-         held%load_1 = held%load_0
+         constraint%load_1 = constraint%load_0
          assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
-         call begin_passes(scheme, held, control_t(), assembly)
+         call begin_passes(scheme, control_t(), solution)
          good = update_contacts(system, dofs, pattern, state%x, .false., assembly)
          if (good) call assemble(domain, dofs, pattern, scheme, state, work, .false., assembly)
          if (good) good = assembly%bad_element == 0
          if (.not. good) return
-         call add_what_acts(dofs, pattern, scheme, held, state, work, .false., touched, assembly, system, forces, t0)
+         call add_what_acts(dofs, scheme, .false., touched, solution, forces, t0)
          where (constraint%fixed .or. dofs%field > DISPLACEMENTS) forces = 0.0_wp
       end associate
    end function unbalanced_forces
 
    !> Inertia of rigid bodies, and the forces of terms.
-   subroutine add_forces(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
+   subroutine add_forces(dofs, scheme, slopes, solution)
       type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
-      type(assembly_t), intent(inout) :: assembly
+      type(solution_t), intent(inout) :: solution
       integer :: i, f, k, place
       real(wp) :: force
 
-      do i = 1, dofs%n
-         if (.not. constraint%mass(i) > 0.0_wp) cycle
-         f = dofs%field(i)
-         k = dofs%node(i)
-         force = constraint%mass(i)*(old%a(f, k) + scheme%l_a*(new%a(f, k) - old%a(f, k)))
-         assembly%residual(i) = assembly%residual(i) + force
-         assembly%scale(i) = assembly%scale(i) + abs(force)
-         place = place_of(pattern, i, i)
-         if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
-      end do
-      do i = 1, size(constraint%added)
-         associate (one => constraint%added(i)%it)
-            if (one%acts) call one%add(dofs, pattern, scheme, old, new, slopes, assembly)
-         end associate
-      end do
-      call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, slopes, assembly)
+      associate (pattern => solution%pattern, assembly => solution%assembly, constraint => solution%constraint, &
+                 old => solution%state, new => solution%next)
+         do i = 1, dofs%n
+            if (.not. constraint%mass(i) > 0.0_wp) cycle
+            f = dofs%field(i)
+            k = dofs%node(i)
+            force = constraint%mass(i)*(old%a(f, k) + scheme%l_a*(new%a(f, k) - old%a(f, k)))
+            assembly%residual(i) = assembly%residual(i) + force
+            assembly%scale(i) = assembly%scale(i) + abs(force)
+            place = place_of(pattern, i, i)
+            if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
+         end do
+         do i = 1, size(constraint%added)
+            associate (one => constraint%added(i)%it)
+               if (one%acts) call one%add(dofs, pattern, scheme, old, new, slopes, assembly)
+            end associate
+         end do
+         call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, slopes, assembly)
+      end associate
    end subroutine add_forces
 
    pure subroutine add_correction(dofs, dx, x, share, largest)
