@@ -25,15 +25,6 @@ module element_equations
    real(wp), parameter :: FLIGHT_SHARE = 1.0e-6_wp
    integer, parameter :: STRAIN_TOO_LARGE = 1000   !< Code of a strain beyond 1 in a step: no law is asked.
 
-   !> Values at the nodes of an element. Pressures with the nodes side by side: p_w, p_c; set where nodes carry them.
-   type :: nodes_t
-      real(wp) :: u0(DISPLACEMENTS, 6), u1(DISPLACEMENTS, 6)   !< Before and after [m].
-      real(wp) :: v0(DISPLACEMENTS, 6)                         !< Before [m/s].
-      real(wp) :: v(DISPLACEMENTS, 6), a(DISPLACEMENTS, 6)     !< At their levels [m/s, m/s2].
-      real(wp) :: p0(6, 2), p1(6, 2)                           !< Before and after [kPa].
-      real(wp) :: rate(6, 2)                                   !< At its level [kPa/s].
-   end type nodes_t
-
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
       real(wp) :: k(MAX_DOF, MAX_DOF) = 0.0_wp   !< d r / d new values.
@@ -145,55 +136,110 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(model_state_t), intent(in) :: old, new
       type(kinematics_t), intent(inout) :: k(:)   !< Kinematics of the points, as many as the element has or more.
-      type(nodes_t) :: nodes
-      real(wp) :: gravity
-      integer :: g, n_p
+      real(wp), dimension(DISPLACEMENTS, 6) :: du, v0, v, a   !< Increment [m], velocity before and at its level [m/s],
+                                                              !< acceleration at its level [m/s2].
+      real(wp), dimension(6, 2) :: p0, p1, rate   !< p_w, p_c before and after [kPa], their rates [kPa/s].
+      real(wp) :: gravity, given(2)
+      integer :: g
 
-      n_p = domain%n_carriers(element)
       gravity = gravity_on(old, element) + scheme%l_f*(gravity_on(new, element) - gravity_on(old, element))
-      call gather(domain, element, scheme, old, new, nodes)
+      call gather()
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(gp, n_p > 0, region%with_c, scheme, nodes, k(g))
-            if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
+            call look(gp, region%with_c, k(g))
+            if (region%drainage /= COUPLED) then
+               ! Pressures that no unknown carries.
+               given = given_pressures_at(domain, element, g)
+               k(g)%w0 = k(g)%w0 + given(1)
+               k(g)%w1 = k(g)%w1 + given(1)
+               k(g)%c0 = k(g)%c0 + given(2)
+               k(g)%c1 = k(g)%c1 + given(2)
+            end if
             k(g)%gravity = gravity
             k(g)%speed = 0.0_wp
-            if (scheme%has_inertia) k(g)%velocity = matmul(nodes%v0, gp%n)
-            if (region%damping > 0.0_wp .and. scheme%has_inertia) k(g)%speed = matmul(nodes%v, gp%n)
+            if (scheme%has_inertia) k(g)%velocity = matmul(v0, gp%n)
+            if (region%damping > 0.0_wp .and. scheme%has_inertia) k(g)%speed = matmul(v, gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &
                k(g)%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
          end associate
       end do
+   contains
+      !> Gathers the values at the nodes; in an undrained element its center carries the pressures.
+      subroutine gather()
+         real(wp) :: p_dot(6)
+         integer :: node(6), carrier(6), f
+
+         node = domain%mesh%t6(:, element)
+         du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
+         if (scheme%has_inertia) a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+         v0 = old%v(:DISPLACEMENTS, node)
+         v = v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - v0)
+         if (domain%n_carriers(element) == 0) return
+         carrier = node
+         if (domain%center(element) > 0) carrier(1) = domain%center(element)
+         do f = AT_P_W, merge(AT_P_C, AT_P_W, domain%with_c)
+            p0(:, f - DISPLACEMENTS) = old%x(f, carrier)
+            p1(:, f - DISPLACEMENTS) = new%x(f, carrier)
+            p_dot = old%v(f, carrier)
+            rate(:, f - DISPLACEMENTS) = p_dot + scheme%l_p*(new%v(f, carrier) - p_dot)
+         end do
+      end subroutine gather
+
+      !> Evaluates strain, pressures and their rates at a point. Without suction nothing is spent on it.
+      subroutine look(gp, with_c, k)
+         type(gauss_t), intent(in) :: gp
+         logical, intent(in) :: with_c   !< Whether the carriers have a suction; else it is 0.
+         type(kinematics_t), intent(inout) :: k
+         real(wp) :: slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(4)
+         integer :: i
+
+         slopes = 0.0_wp
+         hoop = 0.0_wp
+         rates = 0.0_wp
+         do i = 1, 6
+            slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du(:, i)
+            slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du(:, i)
+            hoop = hoop + gp%n_over_r(i)*du(1, i)
+            rates = rates + [gp%dn(i, 1)*v(1, i), gp%dn(i, 2)*v(2, i), gp%n_over_r(i)*v(1, i), &
+                             gp%dn(i, 2)*v(1, i) + gp%dn(i, 1)*v(2, i)]
+         end do
+         k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
+         k%rate = rates
+         k%div_v = sum(rates(:3))
+         k%accel = 0.0_wp
+         if (scheme%has_inertia) then
+            do i = 1, 6
+               k%accel = k%accel + a(:, i)*gp%n(i)
+            end do
+         end if
+         k%w0 = 0.0_wp
+         k%w1 = 0.0_wp
+         k%c0 = 0.0_wp
+         k%c1 = 0.0_wp
+         k%w_dot = 0.0_wp
+         k%c_dot = 0.0_wp
+         k%grad_w = 0.0_wp
+         k%grad_c = 0.0_wp
+         if (domain%n_carriers(element) == 0) return
+         call look_at_pressure(gp, 1, k%w0, k%w1, k%w_dot, k%grad_w)
+         if (with_c) call look_at_pressure(gp, 2, k%c0, k%c1, k%c_dot, k%grad_c)
+      end subroutine look
+
+      !> A pressure before and after, its rate and its gradient at the level of values.
+      subroutine look_at_pressure(gp, which, before, after, p_dot, gradient)
+         type(gauss_t), intent(in) :: gp
+         integer, intent(in) :: which   !< 1: p_w, 2: p_c.
+         real(wp), intent(out) :: before, after, p_dot, gradient(2)
+         real(wp) :: p(6)
+
+         p = p0(:, which) + scheme%l_f*(p1(:, which) - p0(:, which))
+         before = dot_product(gp%m, p0(:, which))
+         after = dot_product(gp%m, p1(:, which))
+         p_dot = dot_product(gp%m, rate(:, which))
+         gradient = [dot_product(gp%dm(:, 1), p), dot_product(gp%dm(:, 2), p)]
+      end subroutine look_at_pressure
    end subroutine look_at_nodes
-
-   !> Gathers the values at the nodes of an element; in an undrained element its center carries the pressures.
-   pure subroutine gather(domain, element, scheme, old, new, nodes)
-      type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
-      type(nodes_t), intent(inout) :: nodes
-      real(wp) :: p_dot(6)
-      integer :: node(6), carrier(6), f
-
-      node = domain%mesh%t6(:, element)
-      nodes%u0 = old%x(:DISPLACEMENTS, node)
-      nodes%u1 = new%x(:DISPLACEMENTS, node)
-      nodes%a = 0.0_wp
-      if (scheme%has_inertia) nodes%a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
-      nodes%v0 = old%v(:DISPLACEMENTS, node)
-      nodes%v = nodes%v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - nodes%v0)
-      if (domain%n_carriers(element) == 0) return
-      carrier = node
-      if (domain%center(element) > 0) carrier(1) = domain%center(element)
-      do f = AT_P_W, merge(AT_P_C, AT_P_W, domain%with_c)
-         nodes%p0(:, f - DISPLACEMENTS) = old%x(f, carrier)
-         nodes%p1(:, f - DISPLACEMENTS) = new%x(f, carrier)
-         p_dot = old%v(f, carrier)
-         nodes%rate(:, f - DISPLACEMENTS) = p_dot + scheme%l_p*(new%v(f, carrier) - p_dot)
-      end do
-   end subroutine gather
 
    !> Writes r (and k where `with_tangent`) of an element of a block that was updated, and the point data of `new`.
    !> docs/theory/host.md sections 3.3 and 3.4. r: [kN], balances of volume [m3/s].
@@ -291,78 +337,4 @@ contains
       change(U + 1:U + 2) = response(U + 1:U + 2)
       change(U + 2) = change(U + 2) - mixture_density(domain, region, e0/(1 + e0), s0)*gravity0
    end function change_of
-
-   !> Evaluates strain, pressures and their rates at a point from the values at the nodes.
-   pure subroutine look(gp, with_w, with_c, scheme, nodes, k)
-      type(gauss_t), intent(in) :: gp
-      logical, intent(in) :: with_w   !< Whether nodes carry pressures.
-      logical, intent(in) :: with_c   !< Whether the carriers have a suction; else it is 0, and nothing is spent on it.
-      type(scheme_t), intent(in) :: scheme
-      type(nodes_t), intent(in) :: nodes
-      type(kinematics_t), intent(inout) :: k
-      real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(4)
-      integer :: i
-
-      slopes = 0.0_wp
-      hoop = 0.0_wp
-      rates = 0.0_wp
-      do i = 1, 6
-         du = nodes%u1(:, i) - nodes%u0(:, i)
-         slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du
-         slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du
-         hoop = hoop + gp%n_over_r(i)*du(1)
-         rates = rates + [gp%dn(i, 1)*nodes%v(1, i), gp%dn(i, 2)*nodes%v(2, i), gp%n_over_r(i)*nodes%v(1, i), &
-                          gp%dn(i, 2)*nodes%v(1, i) + gp%dn(i, 1)*nodes%v(2, i)]
-      end do
-      k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
-      k%rate = rates
-      k%div_v = sum(rates(:3))
-      k%accel = 0.0_wp
-      if (scheme%has_inertia) then
-         do i = 1, 6
-            k%accel = k%accel + nodes%a(:, i)*gp%n(i)
-         end do
-      end if
-      k%w0 = 0.0_wp
-      k%w1 = 0.0_wp
-      k%c0 = 0.0_wp
-      k%c1 = 0.0_wp
-      k%w_dot = 0.0_wp
-      k%c_dot = 0.0_wp
-      k%grad_w = 0.0_wp
-      k%grad_c = 0.0_wp
-      if (.not. with_w) return
-      call look_at_pressure(gp, scheme%l_f, nodes, 1, k%w0, k%w1, k%w_dot, k%grad_w)
-      if (.not. with_c) return
-      call look_at_pressure(gp, scheme%l_f, nodes, 2, k%c0, k%c1, k%c_dot, k%grad_c)
-   end subroutine look
-
-   !> A pressure before and after, its rate and its gradient at the level of values.
-   pure subroutine look_at_pressure(gp, level, nodes, which, before, after, p_dot, gradient)
-      type(gauss_t), intent(in) :: gp
-      real(wp), intent(in) :: level
-      type(nodes_t), intent(in) :: nodes
-      integer, intent(in) :: which   !< 1: p_w, 2: p_c.
-      real(wp), intent(out) :: before, after, p_dot, gradient(2)
-      real(wp) :: p(6)
-
-      associate (p0 => nodes%p0(:, which), p1 => nodes%p1(:, which))
-         p = p0 + level*(p1 - p0)
-         before = dot_product(gp%m, p0)
-         after = dot_product(gp%m, p1)
-      end associate
-      p_dot = dot_product(gp%m, nodes%rate(:, which))
-      gradient = [dot_product(gp%dm(:, 1), p), dot_product(gp%dm(:, 2), p)]
-   end subroutine look_at_pressure
-
-   !> Pressures that no unknown carries.
-   pure subroutine add_given(p, k)
-      real(wp), intent(in) :: p(2)   !< p_w, p_c [kPa]
-      type(kinematics_t), intent(inout) :: k
-
-      k%w0 = k%w0 + p(1)
-      k%w1 = k%w1 + p(1)
-      k%c0 = k%c0 + p(2)
-      k%c1 = k%c1 + p(2)
-   end subroutine add_given
 end module element_equations

@@ -5,23 +5,23 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE, NOT_FINITE
-   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
-                          rounding_in, water_of, BY_FORCES, BY_CHANGE
+   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, linear_tolerance, &
+                          rounding_in, water_of, BY_FORCES, BY_CHANGE, MOST_IN_VAIN
    use linear_forces, only: add_linear_forces
    use degrees_of_freedom, only: dofs_t
-   use equation_assembly, only: assembly_t, assemble, follow_slopes_first
+   use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
-   use porous_domain, only: domain_t, model_state_t
+   use porous_domain, only: domain_t
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use stress_tolerance, only: follow_newton, is_tight
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use solution, only: solution_t
-   use sparsity_pattern, only: pattern_t, place_of
+   use sparsity_pattern, only: place_of
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
    private
@@ -246,8 +246,9 @@ contains
             if (at%rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0), control%tolerance, &
                                             domain, at)
          end if
-         if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. .not. all(log%error < HOPELESS)) &
-            log%outcome = NOT_CONVERGED
+         ! docs/theory/host.md section 5.2.
+         if (log%iterations >= control%max_iterations .or. log%since_best >= MOST_IN_VAIN .or. &
+             .not. all(log%error < HOPELESS)) log%outcome = NOT_CONVERGED
       end associate
    end subroutine judge_iterate
 
@@ -362,21 +363,19 @@ contains
       type(dofs_t), intent(in) :: dofs
       type(solution_t), intent(in) :: solution
       real(wp) :: rounding(FIELDS)
-      real(wp) :: row
-      integer :: i, place, j
+      real(wp) :: unknowns(dofs%n), row
+      integer :: i, place
 
+      unknowns = [(solution%next%x(dofs%field(i), dofs%node(i)), i=1, dofs%n)]
       rounding = 0.0_wp
-      associate (pattern => solution%pattern, values => solution%assembly%values, x => solution%next%x)
-         do i = 1, dofs%n
-            if (solution%constraint%fixed(i)) cycle
-            row = 0.0_wp
-            do place = pattern%row(i), pattern%row(i + 1) - 1
-               j = pattern%col(place)
-               row = row + abs(values(place)*x(dofs%field(j), dofs%node(j)))
-            end do
-            rounding(dofs%field(i)) = rounding(dofs%field(i)) + row**2
+      do i = 1, dofs%n
+         if (solution%constraint%fixed(i)) cycle
+         row = 0.0_wp
+         do place = solution%pattern%row(i), solution%pattern%row(i + 1) - 1
+            row = row + abs(solution%assembly%values(place)*unknowns(solution%pattern%col(place)))
          end do
-      end associate
+         rounding(dofs%field(i)) = rounding(dofs%field(i)) + row**2
+      end do
       rounding(:DISPLACEMENTS) = sum(rounding(:DISPLACEMENTS))
       rounding = ROUNDINGS*epsilon(1.0_wp)*sqrt(rounding)
    end function rounding_of_unknowns
