@@ -16,6 +16,7 @@ module ledger_observer
    use run_observer, only: observer_t, FITS, BEGINS, STEP, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
+   use springs, only: add_mean_of_spring
    use texts, only: short
    use wall_clock, only: clock, add_elapsed
    use warnings, only: print_warning
@@ -131,9 +132,9 @@ contains
             end if
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
-         do i = 1, size(run%constraint%added)
-            associate (one => run%constraint%added(i)%it)
-               if (one%acts) call one%add_means(dofs, run%scheme, run%state, run%next, force)
+         do i = 1, size(run%constraint%springs)
+            associate (one => run%constraint%springs(i))
+               if (one%acts) call add_mean_of_spring(one, dofs, run%scheme, run%state, run%next, force)
             end associate
          end do
       end associate

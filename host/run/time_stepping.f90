@@ -4,7 +4,7 @@ module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
    use convergence, only: control_t
-   use porous_domain, only: copy_state, take_over
+   use porous_domain, only: copy_state
    use run_observer, only: observers_t, FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, &
                            ENDS
    use run_state, only: run_t, enter_stage
@@ -92,7 +92,7 @@ contains
             call run%terms(i)%term%accept(run%problem_t, run%dissipated)
          end do
          call keep_step(run)
-         call take_over(run%next, run%state)
+         call copy_state(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
          at%good = at%good + 1
          if (at%good >= GOOD_STEPS .and. at%factor < 1.0_wp) then

@@ -22,6 +22,7 @@ module newton_step
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use solution, only: solution_t
    use sparsity_pattern, only: place_of
+   use springs, only: add_spring
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
    private
@@ -532,10 +533,9 @@ contains
             place = place_of(pattern, i, i)
             if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
          end do
-         do i = 1, size(constraint%added)
-            associate (one => constraint%added(i)%it)
-               if (one%acts) call one%add(dofs, pattern, scheme, old, new, slopes, assembly)
-            end associate
+         do i = 1, size(constraint%springs)
+            if (constraint%springs(i)%acts) &
+               call add_spring(constraint%springs(i), dofs, pattern, scheme, old, new, slopes, assembly)
          end do
          call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, slopes, assembly)
       end associate
