@@ -31,15 +31,15 @@ contains
    function indicators_of(run, kinetic) result(values)
       type(run_t), intent(in) :: run   !< After a step.
       real(wp), intent(in) :: kinetic   !< Kinetic energy at its end [kJ].
-      real(wp) :: values(4 + size(run%model%domain%regions)), least
+      real(wp) :: values(4 + size(run%domain%regions)), least
       integer :: e, at
 
       values = 0.0_wp
       if (run%scheme%has_rates) values(1) = sqrt(2*kinetic)
       if (run%scheme%has_inertia) values(2) = sqrt(maxval(sum(run%next%a**2, dim=1)))
-      values(3) = max(0.0_wp, maxval(-run%next%x(AT_P_W, :), mask=run%model%dofs%of(AT_P_W, :) > 0))
+      values(3) = max(0.0_wp, maxval(-run%next%x(AT_P_W, :), mask=run%dofs%of(AT_P_W, :) > 0))
       least = huge(1.0_wp)
-      associate (m => run%model%domain, old => run%state, new => run%next)
+      associate (m => run%domain, old => run%state, new => run%next)
          do e = 1, size(m%region_of)
             if (.not. is_present(new, e)) cycle
             at = 4 + m%region_of(e)

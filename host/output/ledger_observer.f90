@@ -69,7 +69,7 @@ contains
       case (FITS)
          if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
       case (BEGINS)
-         if (run%steps == 0 .and. any(run%model%domain%regions%stiffness_damping > 0.0_wp)) &
+         if (run%steps == 0 .and. any(run%domain%regions%stiffness_damping > 0.0_wp)) &
             allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
          if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS// &
                                                      indicator_columns(run%model), run%steps > 0, self%table, fault)
@@ -90,7 +90,7 @@ contains
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp) :: force(run%model%dofs%n)
+      real(wp) :: force(run%dofs%n)
 
       associate (ledger => self%ledger, stage => run%stage)
          if (run%at%step == 1) then
@@ -100,8 +100,7 @@ contains
          end if
          call find_mean_forces(run, force)
          call book_step(force, run, self%damping_stress, ledger)
-         call book_creation(run%scheme, stage%tolerance, run%model%dofs, run%assembly%scale, run%next%x - run%state%x, &
-                            ledger)
+         call book_creation(run, ledger)
          self%indicators = indicators_of(run, ledger%kinetic)
          run%news%contact_work = ledger%contact
          if (.not. has_inertia(stage%kind)) return
@@ -124,7 +123,7 @@ contains
       integer :: i
 
       force = 0.0_wp
-      associate (dofs => run%model%dofs)
+      associate (dofs => run%dofs)
          if (allocated(run%system%contacts)) then
             t0 = clock()
             if (run%system%contacts%forces(dofs, run%state%x, before)) then

@@ -58,8 +58,8 @@ contains
       call begin_stage(begins, run, fault)
       do while (fault%code == 0)
          if (is_over(run)) exit
-         call follow_newton(run%newton%tolerance, run%model%domain%regions)
-         run%newton%roughness = roughness(run%model%domain%regions)
+         call follow_newton(run%newton%tolerance, run%domain%regions)
+         run%newton%roughness = roughness(run%domain%regions)
          run%newton%negligible = negligible_changes(run)
          call try_step(next_step(run), run, accepted, fault)
          if (fault%code /= 0) return
@@ -114,7 +114,7 @@ contains
 
       stretched = 0.0_wp
       if (allocated(run%system%contacts)) call run%system%contacts%stretch(run%state%x, stretched)
-      run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(run%model%domain%bodies)) = 0.0_wp
+      run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(run%domain%bodies)) = 0.0_wp
       run%state%x(:DISPLACEMENTS, :) = run%state%x(:DISPLACEMENTS, :) + stretched
       do i = 1, size(run%model%plates)
          associate (plate => run%model%plates(i))

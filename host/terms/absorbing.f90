@@ -111,11 +111,11 @@ contains
             side%dashpots = size(problem%constraint%linear)
             side%edges = facing_edges(problem%model, side%group, acting_stages(problem%model, side%action_t))
             allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
-            allocate (side%held(problem%model%dofs%n), source=.false.)
-            allocate (side%incoming(problem%model%dofs%n), source=0.0_wp)
+            allocate (side%held(problem%dofs%n), source=.false.)
+            allocate (side%incoming(problem%dofs%n), source=0.0_wp)
             do e = 1, size(side%edges, 2)
                do f = 1, DISPLACEMENTS
-                  associate (unknowns => problem%model%dofs%of(f, side%edges(:, e)))
+                  associate (unknowns => problem%dofs%of(f, side%edges(:, e)))
                      side%held(pack(unknowns, unknowns > 0)) = .true.
                   end associate
                end do
@@ -157,18 +157,18 @@ contains
       type(response_t) :: response
       type(batch_report_t) :: report
       type(relative_t) :: rel
-      real(wp), dimension(problem%model%domain%rule) :: suction, s, n
-      real(wp) :: strain(6, problem%model%domain%rule), p(2), rho, c_p, c_s, modulus, shear
+      real(wp), dimension(problem%domain%rule) :: suction, s, n
+      real(wp) :: strain(6, problem%domain%rule), p(2), rho, c_p, c_s, modulus, shear
       real(wp), allocatable :: before(:, :), after(:, :)
       integer :: e, g, i, first, last
 
       ground = 0.0_wp
       ! The triangle on its left: of two that share it the other may be no ground.
-      associate (t6 => problem%model%domain%mesh%t6)
+      associate (t6 => problem%domain%mesh%t6)
          e = findloc([(any(t6(4:6, i) == edge(3) .and. t6(1:3, i) == edge(1)), i=1, size(t6, 2))], .true., dim=1)
       end associate
-      associate (m => problem%model%domain, state => problem%state, region => &
-                 problem%model%domain%regions(problem%model%domain%region_of(e)))
+      associate (m => problem%domain, state => problem%state, region => &
+                 problem%domain%regions(problem%domain%region_of(e)))
          first = (e - 1)*m%rule + 1
          last = e*m%rule
          law => law_of(m, problem%next, m%region_of(e))
@@ -308,7 +308,7 @@ contains
       end do
       self%at_start = begins
       if (.not. begins) return
-      allocate (keeps(problem%model%dofs%n), source=.false.)
+      allocate (keeps(problem%dofs%n), source=.false.)
       do i = 1, size(self%sides)
          if (acts(self%sides(i), problem%model, problem%at%stage)) keeps = keeps .or. self%sides(i)%held
       end do
@@ -382,7 +382,7 @@ contains
          problem%next%v = 0.0_wp
          problem%next%a = 0.0_wp
          problem%assembly%air = .false.
-         call assemble(problem%model%domain, problem%model%dofs, problem%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), &
+         call assemble(problem%domain, problem%dofs, problem%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), &
                        problem%state, problem%next, .false., problem%assembly)
          if (problem%assembly%bad_element > 0) then
             call raise(fault, EXIT_MATERIAL, 'Stage '//trim(problem%stage%name)//': the material of element '// &

@@ -82,14 +82,14 @@ contains
 
       do i = 1, size(self%all)
          associate (spring => self%all(i)%spring)
-            spring%upper = problem%model%dofs%of(AT_U_Z, problem%model%plates(self%all(i)%plates(1))%node)
-            spring%lower = problem%model%dofs%of(AT_U_Z, problem%model%plates(self%all(i)%plates(2))%node)
+            spring%upper = problem%dofs%of(AT_U_Z, problem%model%plates(self%all(i)%plates(1))%node)
+            spring%lower = problem%dofs%of(AT_U_Z, problem%model%plates(self%all(i)%plates(2))%node)
             pairs(:, i) = [spring%upper, spring%lower]
             problem%constraint%springs = [problem%constraint%springs, spring]
             self%all(i)%place = size(problem%constraint%springs)
          end associate
       end do
-      call join_unknowns(problem%model%dofs, pairs, problem%system, problem%pattern, problem%assembly)
+      call join_unknowns(problem%dofs, pairs, problem%system, problem%pattern, problem%assembly)
    end subroutine begin_run
 
    subroutine begin_stage(self, begins, problem, fault)
