@@ -158,7 +158,7 @@ contains
       type(batch_report_t) :: report
       type(relative_t) :: rel
       real(wp), dimension(problem%domain%rule) :: suction, s, n
-      real(wp) :: strain(6, problem%domain%rule), p(2), rho, c_p, c_s, modulus, shear
+      real(wp) :: strain(6, problem%domain%rule), p(2), rho, c_p, c_s, modulus, shear, slope
       real(wp), allocatable :: before(:, :), after(:, :)
       integer :: e, g, i, first, last
 
@@ -192,8 +192,10 @@ contains
          if (side%rho > 0.0_wp) rho = side%rho
          modulus = sum(response%dsig_deps(1, 1, :m%rule) + response%dsig_deps(2, 2, :m%rule))/(2*m%rule)
          shear = sum(response%dsig_deps(4, 4, :m%rule))/m%rule
+         slope = 0.0_wp
+         if (region%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
          if (region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)) modulus = modulus &
-            + pore_stiffness(m, n(1), sum(s)/m%rule, sum(response%dsw_dpc(:m%rule))/m%rule)
+            + pore_stiffness(m, n(1), sum(s)/m%rule, slope)
          c_p = side%c_p
          c_s = side%c_s
          if (.not. (max(c_p, modulus) > 0.0_wp .and. max(c_s, shear) > 0.0_wp)) then
