@@ -9,9 +9,8 @@ module element_equations
    use element_sums, only: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, &
                            residual_of, matrix_of
    use porous_domain, only: domain_t, region_t, model_state_t, gauss_t, mixture_density, given_pressures_at, &
-                            gravity_on, COUPLED
-   use porous_balance, only: kinematics_t, pore_t, skeleton_t, point_response, solid_response, PLACES, RR, TT, RZ, &
-                             U
+                            gravity_on, law_of, COUPLED
+   use porous_balance, only: kinematics_t, pore_t, point_response, PLACES, RR, TT, RZ, U
    use generalised_alpha, only: scheme_t
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
@@ -25,15 +24,6 @@ module element_equations
    !> large, 1e-6 leaves room for their rounding.
    real(wp), parameter :: FLIGHT_SHARE = 1.0e-6_wp
    integer, parameter :: STRAIN_TOO_LARGE = 1000   !< Code of a strain beyond 1 in a step: no law is asked.
-
-   !> Values at the nodes of an element. Pressures with the nodes side by side: p_w, p_c; set where nodes carry them.
-   type :: nodes_t
-      real(wp) :: u0(DISPLACEMENTS, 6), u1(DISPLACEMENTS, 6)   !< Before and after [m].
-      real(wp) :: v0(DISPLACEMENTS, 6)                         !< Before [m/s].
-      real(wp) :: v(DISPLACEMENTS, 6), a(DISPLACEMENTS, 6)     !< At their levels [m/s, m/s2].
-      real(wp) :: p0(6, 2), p1(6, 2)                           !< Before and after [kPa].
-      real(wp) :: rate(6, 2)                                   !< At its level [kPa/s].
-   end type nodes_t
 
    type :: element_t
       real(wp) :: r(MAX_DOF) = 0.0_wp            !< Residual.
@@ -78,7 +68,7 @@ contains
    !> of `new`. Where a strain of the step is beyond 1 or the material refuses, block%report says why; the response is
    !> then of no use.
    subroutine update_block(domain, scheme, old, new, with_tangent, slopes, block, points)
-      type(domain_t), intent(in) :: domain
+      type(domain_t), intent(in), target :: domain
       type(scheme_t), intent(in) :: scheme
       type(model_state_t), intent(in), target :: old
       type(model_state_t), intent(inout), target :: new
@@ -89,7 +79,9 @@ contains
       real(wp), dimension(MOST_POINTS) :: suction, d_suction
       real(wp) :: strain(6, MOST_POINTS)
       real(wp), pointer, contiguous :: before(:, :), after(:, :)   !< (n_state, points) of the law
-      integer :: e, first, g, last, n, n_state, region
+      class(material_t), pointer :: law
+      real(wp) :: t0
+      integer :: e, first, g, last, n
 
       block%report = batch_report_t()
       block%soft = .false.
@@ -122,31 +114,19 @@ contains
                             points%response)
          return
       end if
-      region = domain%region_of(block%first)
-      n_state = domain%regions(region)%law%n_state
+      law => law_of(domain, new, domain%region_of(block%first))
       associate (from => domain%before_state(block%first) + 1, to => domain%before_state(block%last + 1))
-         before(1:n_state, 1:n) => old%state(from:to)
-         after(1:n_state, 1:n) => new%state(from:to)
+         before(1:law%n_state, 1:n) => old%state(from:to)
+         after(1:law%n_state, 1:n) => new%state(from:to)
       end associate
-      if (allocated(new%laws)) then
-         call ask(new%laws(region)%law)
-      else
-         call ask(domain%regions(region)%law)
-      end if
-   contains
-      subroutine ask(law)
-         class(material_t), intent(in) :: law
-         real(wp) :: t0
-
-         t0 = clock()
-         call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
-                         with_tangent .or. allocated(slopes%strain), points%response, after, block%report)
-         call add_elapsed(block%seconds, t0)
-         if (block%report%code /= 0) return
-         if (allocated(slopes%strain)) call keep_slopes(n, first, points%response, slopes)
-         if (with_tangent .and. block%fallback /= NO_FALLBACK) call replace_soft_tangents(law, block%fallback, n, &
-            after, suction(:n) + d_suction(:n), points%response, block%soft)
-      end subroutine ask
+      t0 = clock()
+      call law%update(n, old%stress(:, first:last), before, strain, suction, d_suction, &
+                      with_tangent .or. allocated(slopes%strain), points%response, after, block%report)
+      call add_elapsed(block%seconds, t0)
+      if (block%report%code /= 0) return
+      if (allocated(slopes%strain)) call keep_slopes(n, first, points%response, slopes)
+      if (with_tangent .and. block%fallback /= NO_FALLBACK) call replace_soft_tangents(law, block%fallback, n, &
+         after, suction(:n) + d_suction(:n), points%response, block%soft)
    end subroutine update_block
 
    !> Evaluates strains, pressures and their rates at the points of an element from the values at its nodes.
@@ -156,55 +136,110 @@ contains
       type(scheme_t), intent(in) :: scheme
       type(model_state_t), intent(in) :: old, new
       type(kinematics_t), intent(inout) :: k(:)   !< Kinematics of the points, as many as the element has or more.
-      type(nodes_t) :: nodes
-      real(wp) :: gravity
-      integer :: g, n_p
+      real(wp), dimension(DISPLACEMENTS, 6) :: du, v0, v, a   !< Increment [m], velocity before and at its level [m/s],
+                                                              !< acceleration at its level [m/s2].
+      real(wp), dimension(6, 2) :: p0, p1, rate   !< p_w, p_c before and after [kPa], their rates [kPa/s].
+      real(wp) :: gravity, given(2)
+      integer :: g
 
-      n_p = domain%n_carriers(element)
       gravity = gravity_on(old, element) + scheme%l_f*(gravity_on(new, element) - gravity_on(old, element))
-      call gather(domain, element, scheme, old, new, nodes)
+      call gather()
       do g = 1, domain%rule
          associate (gp => domain%gauss(g, element), region => domain%regions(domain%region_of(element)))
-            call look(gp, n_p > 0, region%with_c, scheme, nodes, k(g))
-            if (region%drainage /= COUPLED) call add_given(given_pressures_at(domain, element, g), k(g))
+            call look(gp, region%with_c, k(g))
+            if (region%drainage /= COUPLED) then
+               ! Pressures that no unknown carries.
+               given = given_pressures_at(domain, element, g)
+               k(g)%w0 = k(g)%w0 + given(1)
+               k(g)%w1 = k(g)%w1 + given(1)
+               k(g)%c0 = k(g)%c0 + given(2)
+               k(g)%c1 = k(g)%c1 + given(2)
+            end if
             k(g)%gravity = gravity
             k(g)%speed = 0.0_wp
-            if (scheme%has_inertia) k(g)%velocity = matmul(nodes%v0, gp%n)
-            if (region%damping > 0.0_wp .and. scheme%has_inertia) k(g)%speed = matmul(nodes%v, gp%n)
+            if (scheme%has_inertia) k(g)%velocity = matmul(v0, gp%n)
+            if (region%damping > 0.0_wp .and. scheme%has_inertia) k(g)%speed = matmul(v, gp%n)
             k(g)%source = 0.0_wp
             if (associated(domain%source)) &
                k(g)%source = domain%source(gp%x, old%time + scheme%l_f*(new%time - old%time))
          end associate
       end do
+   contains
+      !> Gathers the values at the nodes; in an undrained element its center carries the pressures.
+      subroutine gather()
+         real(wp) :: p_dot(6)
+         integer :: node(6), carrier(6), f
+
+         node = domain%mesh%t6(:, element)
+         du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
+         if (scheme%has_inertia) a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
+         v0 = old%v(:DISPLACEMENTS, node)
+         v = v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - v0)
+         if (domain%n_carriers(element) == 0) return
+         carrier = node
+         if (domain%center(element) > 0) carrier(1) = domain%center(element)
+         do f = AT_P_W, merge(AT_P_C, AT_P_W, domain%with_c)
+            p0(:, f - DISPLACEMENTS) = old%x(f, carrier)
+            p1(:, f - DISPLACEMENTS) = new%x(f, carrier)
+            p_dot = old%v(f, carrier)
+            rate(:, f - DISPLACEMENTS) = p_dot + scheme%l_p*(new%v(f, carrier) - p_dot)
+         end do
+      end subroutine gather
+
+      !> Evaluates strain, pressures and their rates at a point. Without suction nothing is spent on it.
+      subroutine look(gp, with_c, k)
+         type(gauss_t), intent(in) :: gp
+         logical, intent(in) :: with_c   !< Whether the carriers have a suction; else it is 0.
+         type(kinematics_t), intent(inout) :: k
+         real(wp) :: slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(4)
+         integer :: i
+
+         slopes = 0.0_wp
+         hoop = 0.0_wp
+         rates = 0.0_wp
+         do i = 1, 6
+            slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du(:, i)
+            slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du(:, i)
+            hoop = hoop + gp%n_over_r(i)*du(1, i)
+            rates = rates + [gp%dn(i, 1)*v(1, i), gp%dn(i, 2)*v(2, i), gp%n_over_r(i)*v(1, i), &
+                             gp%dn(i, 2)*v(1, i) + gp%dn(i, 1)*v(2, i)]
+         end do
+         k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
+         k%rate = rates
+         k%div_v = sum(rates(:3))
+         k%accel = 0.0_wp
+         if (scheme%has_inertia) then
+            do i = 1, 6
+               k%accel = k%accel + a(:, i)*gp%n(i)
+            end do
+         end if
+         k%w0 = 0.0_wp
+         k%w1 = 0.0_wp
+         k%c0 = 0.0_wp
+         k%c1 = 0.0_wp
+         k%w_dot = 0.0_wp
+         k%c_dot = 0.0_wp
+         k%grad_w = 0.0_wp
+         k%grad_c = 0.0_wp
+         if (domain%n_carriers(element) == 0) return
+         call look_at_pressure(gp, 1, k%w0, k%w1, k%w_dot, k%grad_w)
+         if (with_c) call look_at_pressure(gp, 2, k%c0, k%c1, k%c_dot, k%grad_c)
+      end subroutine look
+
+      !> A pressure before and after, its rate and its gradient at the level of values.
+      subroutine look_at_pressure(gp, which, before, after, p_dot, gradient)
+         type(gauss_t), intent(in) :: gp
+         integer, intent(in) :: which   !< 1: p_w, 2: p_c.
+         real(wp), intent(out) :: before, after, p_dot, gradient(2)
+         real(wp) :: p(6)
+
+         p = p0(:, which) + scheme%l_f*(p1(:, which) - p0(:, which))
+         before = dot_product(gp%m, p0(:, which))
+         after = dot_product(gp%m, p1(:, which))
+         p_dot = dot_product(gp%m, rate(:, which))
+         gradient = [dot_product(gp%dm(:, 1), p), dot_product(gp%dm(:, 2), p)]
+      end subroutine look_at_pressure
    end subroutine look_at_nodes
-
-   !> Gathers the values at the nodes of an element; in an undrained element its center carries the pressures.
-   pure subroutine gather(domain, element, scheme, old, new, nodes)
-      type(domain_t), intent(in) :: domain
-      integer, intent(in) :: element
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
-      type(nodes_t), intent(inout) :: nodes
-      real(wp) :: p_dot(6)
-      integer :: node(6), carrier(6), f
-
-      node = domain%mesh%t6(:, element)
-      nodes%u0 = old%x(:DISPLACEMENTS, node)
-      nodes%u1 = new%x(:DISPLACEMENTS, node)
-      nodes%a = 0.0_wp
-      if (scheme%has_inertia) nodes%a = old%a(:, node) + scheme%l_a*(new%a(:, node) - old%a(:, node))
-      nodes%v0 = old%v(:DISPLACEMENTS, node)
-      nodes%v = nodes%v0 + scheme%l_v*(new%v(:DISPLACEMENTS, node) - nodes%v0)
-      if (domain%n_carriers(element) == 0) return
-      carrier = node
-      if (domain%center(element) > 0) carrier(1) = domain%center(element)
-      do f = AT_P_W, merge(AT_P_C, AT_P_W, domain%with_c)
-         nodes%p0(:, f - DISPLACEMENTS) = old%x(f, carrier)
-         nodes%p1(:, f - DISPLACEMENTS) = new%x(f, carrier)
-         p_dot = old%v(f, carrier)
-         nodes%rate(:, f - DISPLACEMENTS) = p_dot + scheme%l_p*(new%v(f, carrier) - p_dot)
-      end do
-   end subroutine gather
 
    !> Writes r (and k where `with_tangent`) of an element of a block that was updated, and the point data of `new`.
    !> docs/theory/host.md sections 3.3 and 3.4. r: [kN], balances of volume [m3/s].
@@ -218,7 +253,6 @@ contains
       type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
-      type(skeleton_t) :: skeleton
       type(pore_t) :: pore
       type(sums_t) :: sums
       type(rows_t) :: rows
@@ -235,24 +269,13 @@ contains
       do g = 1, domain%rule
          p = (element - 1)*domain%rule + g
          q = (element - block%first)*domain%rule + g
-         skeleton%stress = points%response%stress(1:4, q)
-         skeleton%e = points%response%void_ratio(q)
-         skeleton%s = points%response%s_w(q)
-         if (with_tangent) then
-            skeleton%tangent = points%response%dsig_deps(1:4, 1:4, q)
-            skeleton%tangent_suction = points%response%dsig_dpc(1:4, q)
-            skeleton%ds_dev = points%response%dsw_dev(q)
-            skeleton%ds_dpc = points%response%dsw_dpc(q)
-         else
-            skeleton%ds_dev = 0.0_wp
-            skeleton%ds_dpc = 0.0_wp
-         end if
          associate (gp => domain%gauss(g, element), k => points%k(q), &
                     region => domain%regions(domain%region_of(element)))
+            call point_response(domain, region, scheme, k, old%stress(:, p), points%response, q, &
+                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, drift)
+            new%stress(:, p) = points%response%stress(:, q)
+            new%e(p) = pore%e
             if (region%with_w) then
-               call point_response(domain, region, scheme, k, old%stress(:, p), skeleton, &
-                                   pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, &
-                                   drift)
                new%s(p) = pore%s
                new%s_rate(p) = pore%s_rate
                rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
@@ -260,18 +283,13 @@ contains
                   out%stretch([LAST_U + i, LAST_U + n_p + i]) = out%stretch([LAST_U + i, LAST_U + n_p + i]) &
                      + rate*abs(gp%m(i)) + gp%weight*matmul(abs(gp%dm(i, :)), drift)
                end do
-            else
-               call solid_response(region, scheme, k, old%stress(:, p), skeleton, old%e(p), with_tangent, response, &
-                                   tangent)
             end if
-            new%stress(:, p) = points%response%stress(:, q)
-            new%e(p) = skeleton%e
             rows = weighted_rows(gp)
             call add_response(rows, n_fields, response, sums%r)
             if (out%with_change) call add_forces(rows, &
                change_of(domain, region, k, gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), response), &
                change)
-            if (scheme%has_inertia) call add_flight_scale(domain, region, k, scheme, skeleton, gp, out%stretch)
+            if (scheme%has_inertia) call add_flight_scale(domain, region, k, scheme, pore, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, rows, n_fields, tangent, sums%k)
          end associate
       end do
@@ -282,18 +300,18 @@ contains
    end subroutine add_element
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
-   pure subroutine add_flight_scale(domain, region, k, scheme, skeleton, gp, stretch)
+   pure subroutine add_flight_scale(domain, region, k, scheme, pore, gp, stretch)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
       type(scheme_t), intent(in) :: scheme
-      type(skeleton_t), intent(in) :: skeleton
+      type(pore_t), intent(in) :: pore   !< At the end of the step.
       type(gauss_t), intent(in) :: gp
       real(wp), intent(inout) :: stretch(:)
       real(wp) :: force, part
       integer :: i
 
-      force = mixture_density(domain, region, skeleton%e/(1 + skeleton%e), skeleton%s) &
+      force = mixture_density(domain, region, pore%e/(1 + pore%e), pore%s) &
               *(k%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
       do i = 1, size(gp%n)
          part = gp%weight*force*abs(gp%n(i))
@@ -319,78 +337,4 @@ contains
       change(U + 1:U + 2) = response(U + 1:U + 2)
       change(U + 2) = change(U + 2) - mixture_density(domain, region, e0/(1 + e0), s0)*gravity0
    end function change_of
-
-   !> Evaluates strain, pressures and their rates at a point from the values at the nodes.
-   pure subroutine look(gp, with_w, with_c, scheme, nodes, k)
-      type(gauss_t), intent(in) :: gp
-      logical, intent(in) :: with_w   !< Whether nodes carry pressures.
-      logical, intent(in) :: with_c   !< Whether the carriers have a suction; else it is 0, and nothing is spent on it.
-      type(scheme_t), intent(in) :: scheme
-      type(nodes_t), intent(in) :: nodes
-      type(kinematics_t), intent(inout) :: k
-      real(wp) :: du(DISPLACEMENTS), slopes(DISPLACEMENTS, DISPLACEMENTS), hoop, rates(4)
-      integer :: i
-
-      slopes = 0.0_wp
-      hoop = 0.0_wp
-      rates = 0.0_wp
-      do i = 1, 6
-         du = nodes%u1(:, i) - nodes%u0(:, i)
-         slopes(:, 1) = slopes(:, 1) + gp%dn(i, 1)*du
-         slopes(:, 2) = slopes(:, 2) + gp%dn(i, 2)*du
-         hoop = hoop + gp%n_over_r(i)*du(1)
-         rates = rates + [gp%dn(i, 1)*nodes%v(1, i), gp%dn(i, 2)*nodes%v(2, i), gp%n_over_r(i)*nodes%v(1, i), &
-                          gp%dn(i, 2)*nodes%v(1, i) + gp%dn(i, 1)*nodes%v(2, i)]
-      end do
-      k%strain = [slopes(1, 1), slopes(2, 2), hoop, slopes(1, 2) + slopes(2, 1)]
-      k%rate = rates
-      k%div_v = sum(rates(:3))
-      k%accel = 0.0_wp
-      if (scheme%has_inertia) then
-         do i = 1, 6
-            k%accel = k%accel + nodes%a(:, i)*gp%n(i)
-         end do
-      end if
-      k%w0 = 0.0_wp
-      k%w1 = 0.0_wp
-      k%c0 = 0.0_wp
-      k%c1 = 0.0_wp
-      k%w_dot = 0.0_wp
-      k%c_dot = 0.0_wp
-      k%grad_w = 0.0_wp
-      k%grad_c = 0.0_wp
-      if (.not. with_w) return
-      call look_at_pressure(gp, scheme%l_f, nodes, 1, k%w0, k%w1, k%w_dot, k%grad_w)
-      if (.not. with_c) return
-      call look_at_pressure(gp, scheme%l_f, nodes, 2, k%c0, k%c1, k%c_dot, k%grad_c)
-   end subroutine look
-
-   !> A pressure before and after, its rate and its gradient at the level of values.
-   pure subroutine look_at_pressure(gp, level, nodes, which, before, after, p_dot, gradient)
-      type(gauss_t), intent(in) :: gp
-      real(wp), intent(in) :: level
-      type(nodes_t), intent(in) :: nodes
-      integer, intent(in) :: which   !< 1: p_w, 2: p_c.
-      real(wp), intent(out) :: before, after, p_dot, gradient(2)
-      real(wp) :: p(6)
-
-      associate (p0 => nodes%p0(:, which), p1 => nodes%p1(:, which))
-         p = p0 + level*(p1 - p0)
-         before = dot_product(gp%m, p0)
-         after = dot_product(gp%m, p1)
-      end associate
-      p_dot = dot_product(gp%m, nodes%rate(:, which))
-      gradient = [dot_product(gp%dm(:, 1), p), dot_product(gp%dm(:, 2), p)]
-   end subroutine look_at_pressure
-
-   !> Pressures that no unknown carries.
-   pure subroutine add_given(p, k)
-      real(wp), intent(in) :: p(2)   !< p_w, p_c [kPa]
-      type(kinematics_t), intent(inout) :: k
-
-      k%w0 = k%w0 + p(1)
-      k%w1 = k%w1 + p(1)
-      k%c0 = k%c0 + p(2)
-      k%c1 = k%c1 + p(2)
-   end subroutine add_given
 end module element_equations

@@ -14,8 +14,8 @@ module porous_domain
    implicit none (type, external)
    private
    public :: domain_t, region_t, fluids_t, gauss_t, model_state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             take_over, mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
-             keep_element_state, exchange_state
+             mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
+             keep_element_state, exchange_state, law_of
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
    integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.
@@ -291,6 +291,17 @@ contains
       if (allocated(state%present)) is_present = state%present(element)
    end function is_present
 
+   !> Law of a region in the step that ends with a state: that of the step where laws change with time.
+   function law_of(domain, state, region) result(law)
+      type(domain_t), intent(in), target :: domain
+      type(model_state_t), intent(in), target :: state
+      integer, intent(in) :: region   !< Number of the region.
+      class(material_t), pointer :: law
+
+      law => domain%regions(region)%law
+      if (allocated(state%laws)) law => state%laws(region)%law
+   end function law_of
+
    !> Gravity on an element, towards -z: that of new ground grows over its first stage [m/s2].
    pure real(wp) function gravity_on(state, element) result(gravity)
       type(model_state_t), intent(in) :: state
@@ -320,51 +331,16 @@ contains
       end associate
    end subroutine keep_element_state
 
-   !> A state that is accepted takes the place of the one before. What is large changes hands: `new` is left with
-   !> stresses and state variables of the step before, all of which a pass by the material writes.
-   subroutine take_over(new, state)
-      type(model_state_t), intent(inout) :: new, state
-      real(wp), allocatable :: stress(:, :), variables(:)
-
-      call move_alloc(state%stress, stress)
-      call move_alloc(new%stress, state%stress)
-      call move_alloc(stress, new%stress)
-      call move_alloc(state%state, variables)
-      call move_alloc(new%state, state%state)
-      call move_alloc(variables, new%state)
-      call copy_small(new, state)
-   end subroutine take_over
-
-   !> Copies without allocating anew. Both must have the same extents.
+   !> Copies a state. The laws of a step are not handed on.
    subroutine copy_state(from, to)
       type(model_state_t), intent(in) :: from
       type(model_state_t), intent(inout) :: to
+      type(material_slot_t), allocatable :: laws(:)
 
-      to%stress(:, :) = from%stress
-      to%state(:) = from%state
-      call copy_small(from, to)
+      call move_alloc(to%laws, laws)
+      to = from
+      call move_alloc(laws, to%laws)
    end subroutine copy_state
-
-   !> All but stresses and state variables of the points.
-   subroutine copy_small(from, to)
-      type(model_state_t), intent(in) :: from
-      type(model_state_t), intent(inout) :: to
-
-      to%time = from%time
-      to%gravity = from%gravity
-      to%growth = from%growth
-      to%outflow = from%outflow
-      if (allocated(from%present)) then
-         to%present = from%present
-         to%joins = from%joins
-      end if
-      to%x(:, :) = from%x
-      to%v(:, :) = from%v
-      to%a(:, :) = from%a
-      to%e(:) = from%e
-      to%s(:) = from%s
-      to%s_rate(:) = from%s_rate
-   end subroutine copy_small
 
    !> Exchanges a state with an archive. Gravity, parts of the ground and laws follow from the scene and the time.
    subroutine exchange_state(domain, state, archive)

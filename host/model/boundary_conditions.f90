@@ -29,7 +29,7 @@ contains
                    constraint%rain_1(n), constraint%offset(n), constraint%mass(n), source=0.0_wp)
          allocate (constraint%air_target(nodes), source=0.0_wp)
       end associate
-      allocate (constraint%linear(0), constraint%added(0))
+      allocate (constraint%linear(0), constraint%springs(0))
       do i = 1, size(model%plates)
          ! Plates whose boundaries a &tie joins have one unknown.
          associate (of => model%plates(i)%coordinates, at => unknowns_of(model%plates(i), model%dofs))

@@ -66,10 +66,10 @@ contains
       type(run_t), intent(inout) :: run
       integer :: i
 
-      associate (nodes => run%model%domain%mesh%t6, of => run%model%domain%region_of)
+      associate (nodes => run%domain%mesh%t6, of => run%domain%region_of)
          allocate (self%counts(size(run%state%x, 2)), source=.false.)
          do i = 1, size(of)
-            if (run%model%domain%regions(of(i))%law%overcounts_cycles) self%counts(nodes(:, i)) = .true.
+            if (run%domain%regions(of(i))%law%overcounts_cycles) self%counts(nodes(:, i)) = .true.
          end do
       end associate
       if (run%steps > 0) return
@@ -113,7 +113,7 @@ contains
          if (at <= n) then
             text = 'history '''//trim(run%model%amplitudes(at)%name)//''''
          else
-            associate (x => run%model%domain%mesh%x(:, (at - n + 1)/2))
+            associate (x => run%domain%mesh%x(:, (at - n + 1)/2))
                text = 'the ground at ('//short(x(1))//', '//short(x(2))//') m'
             end associate
          end if

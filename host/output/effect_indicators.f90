@@ -3,7 +3,6 @@
 !> is asked of the material. docs/theory/host.md section 11.
 module effect_indicators
    use kinds, only: wp
-   use energy_ledger, only: kinetic_energy
    use model_types, only: model_t
    use unknown_fields, only: AT_P_W
    use porous_domain, only: is_present
@@ -29,18 +28,18 @@ contains
    !> acceleration of a node [m/s2], for that of the skeleton in Darcy's law; the largest tension of the water [kPa],
    !> for suction; the inverse of the least mean effective stress of a material that yields [1/kPa], for gravity; of
    !> every region the largest rate of volume [1/s], for flow. 0 where there is none.
-   function indicators_of(run) result(values)
+   function indicators_of(run, kinetic) result(values)
       type(run_t), intent(in) :: run   !< After a step.
-      real(wp) :: values(4 + size(run%model%domain%regions)), least
+      real(wp), intent(in) :: kinetic   !< Kinetic energy at its end [kJ].
+      real(wp) :: values(4 + size(run%domain%regions)), least
       integer :: e, at
 
       values = 0.0_wp
-      if (run%scheme%has_rates) &
-         values(1) = sqrt(2*kinetic_energy(run, run%next))
+      if (run%scheme%has_rates) values(1) = sqrt(2*kinetic)
       if (run%scheme%has_inertia) values(2) = sqrt(maxval(sum(run%next%a**2, dim=1)))
-      values(3) = max(0.0_wp, maxval(-run%next%x(AT_P_W, :), mask=run%model%dofs%of(AT_P_W, :) > 0))
+      values(3) = max(0.0_wp, maxval(-run%next%x(AT_P_W, :), mask=run%dofs%of(AT_P_W, :) > 0))
       least = huge(1.0_wp)
-      associate (m => run%model%domain, old => run%state, new => run%next)
+      associate (m => run%domain, old => run%state, new => run%next)
          do e = 1, size(m%region_of)
             if (.not. is_present(new, e)) cycle
             at = 4 + m%region_of(e)

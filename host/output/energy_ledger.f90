@@ -8,8 +8,7 @@ module energy_ledger
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use linear_forces, only: work_of_linear_forces
-   use degrees_of_freedom, only: dofs_t
-   use porous_domain, only: domain_t, region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
+   use porous_domain, only: region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
                             gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use generalised_alpha, only: scheme_t
@@ -62,7 +61,7 @@ contains
       real(wp), allocatable :: change(:, :), held(:, :)
       integer :: e
 
-      associate (domain => run%model%domain, dofs => run%model%dofs, old => run%state, new => run%next, &
+      associate (domain => run%domain, dofs => run%dofs, old => run%state, new => run%next, &
                  linear => run%constraint%linear)
          ledger%kinetic = kinetic_energy(run, new)
          allocate (change, source=new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))
@@ -73,7 +72,7 @@ contains
                call add_work_of_element(e, run, damping_stress, change(:, node), work)
                ledger%supports = ledger%supports + work_to_move_element(e, run, damping_stress, held(:, node))
                if (.not. domain%with_w .or. .not. run%scheme%has_rates) cycle
-               if (domain%regions(domain%region_of(e))%drainage == COUPLED) call book_seepage(domain, e, run, ledger)
+               if (domain%regions(domain%region_of(e))%drainage == COUPLED) call book_seepage(e, run, ledger)
             end associate
          end do
          work%damping = work%damping + work_of_linear_forces(linear, .true., dofs, old, new, change)
@@ -112,8 +111,8 @@ contains
          damping_stress = 0.0_wp
          return
       end if
-      do e = 1, size(run%model%domain%region_of)
-         associate (domain => run%model%domain, region => run%model%domain%regions(run%model%domain%region_of(e)))
+      do e = 1, size(run%domain%region_of)
+         associate (domain => run%domain, region => run%domain%regions(run%domain%region_of(e)))
             do p = (e - 1)*domain%rule + 1, e*domain%rule
                damping_stress(:, p) = damping_stress(:, p) &
                   + (damping_in(region, run%scheme, run%next%stress(1:4, p) - run%state%stress(1:4, p)) &
@@ -133,7 +132,7 @@ contains
       held = 0.0_wp
       do k = 1, size(change, 2)
          do f = 1, DISPLACEMENTS
-            associate (at => run%model%dofs%of(f, k))
+            associate (at => run%dofs%of(f, k))
                if (at == 0) cycle
                if (run%constraint%fixed(at)) held(f, k) = change(f, k)
             end associate
@@ -150,8 +149,8 @@ contains
       real(wp) :: load
       integer :: i
 
-      do i = 1, run%model%dofs%n
-         associate (f => run%model%dofs%field(i), k => run%model%dofs%node(i), constraint => run%constraint, &
+      do i = 1, run%dofs%n
+         associate (f => run%dofs%field(i), k => run%dofs%node(i), constraint => run%constraint, &
                     scheme => run%scheme, touch => contact_force(i))
             if (f > DISPLACEMENTS) cycle
             load = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i)) - constraint%offset(i)
@@ -174,7 +173,7 @@ contains
       real(wp) :: flow(OUTFLOWS), mean(OUTFLOWS)
       integer :: i
 
-      associate (dofs => run%model%dofs, scheme => run%scheme, constraint => run%constraint, &
+      associate (dofs => run%dofs, scheme => run%scheme, constraint => run%constraint, &
                  reaction => run%system%reaction, before => run%state%outflow, after => run%next%outflow)
          after = 0.0_wp
          if (.not. scheme%has_rates) return
@@ -217,7 +216,7 @@ contains
       real(wp) :: dv(DISPLACEMENTS, 6), v(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
-      associate (domain => run%model%domain, scheme => run%scheme, old => run%state, new => run%next)
+      associate (domain => run%domain, scheme => run%scheme, old => run%state, new => run%next)
          gravity = 0.5_wp*(gravity_on(old, e) + gravity_on(new, e))
          node = domain%mesh%t6(:, e)
          dv = new%v(:DISPLACEMENTS, node) - old%v(:DISPLACEMENTS, node)
@@ -254,8 +253,7 @@ contains
    end subroutine add_work_of_element
 
    !> Energy that seepage dissipates in an element.
-   subroutine book_seepage(domain, e, run, ledger)
-      type(domain_t), intent(in) :: domain
+   subroutine book_seepage(e, run, ledger)
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
@@ -264,19 +262,19 @@ contains
       integer :: g, p, n_p
 
       gravity = 0.5_wp*(gravity_on(run%state, e) + gravity_on(run%next, e))
-      n_p = domain%n_p
-      associate (node => domain%mesh%t6(:, e))
+      n_p = run%domain%n_p
+      associate (node => run%domain%mesh%t6(:, e))
          middle = 0.5_wp*(run%state%x(AT_P_W:AT_P_C, node) + run%next%x(AT_P_W:AT_P_C, node))
       end associate
-      do g = 1, domain%rule
-         p = (e - 1)*domain%rule + g
-         associate (gp => domain%gauss(g, e), f => domain%fluids, &
-                    law => domain%permeabilities(domain%regions(domain%region_of(e))%permeability))
+      do g = 1, run%domain%rule
+         p = (e - 1)*run%domain%rule + g
+         associate (gp => run%domain%gauss(g, e), f => run%domain%fluids, &
+                    law => run%domain%permeabilities(run%domain%regions(run%domain%region_of(e))%permeability))
             rel = relative_permeability(law, 0.5_wp*(run%state%s(p) + run%next%s(p)))
             kappa = law%intrinsic*rel%w/f%eta_w
             drive = matmul(middle(AT_P_W, :n_p), gp%dm(:n_p, :)) + [0.0_wp, f%rho_w*gravity]
             ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
-            if (.not. domain%with_c) cycle
+            if (.not. run%domain%with_c) cycle
             kappa = law%intrinsic*rel%a/f%eta_a
             drive = matmul(middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p), gp%dm(:n_p, :)) + [0.0_wp, &
                f%rho_a*gravity]
@@ -293,7 +291,7 @@ contains
       integer :: e, g, p, i
 
       energy = 0.0_wp
-      associate (domain => run%model%domain, dofs => run%model%dofs, mass => run%constraint%mass)
+      associate (domain => run%domain, dofs => run%dofs, mass => run%constraint%mass)
          do e = 1, size(domain%mesh%t6, 2)
             if (.not. is_present(state, e)) cycle
             nodal = state%v(:DISPLACEMENTS, domain%mesh%t6(:, e))
@@ -313,12 +311,8 @@ contains
 
    !> After a step is booked: the largest work so far and, in a dynamic stage, the most energy created, which is what
    !> the balance leaves open with the wrong sign. docs/theory/host.md section 9.
-   pure subroutine book_creation(scheme, tolerance, dofs, scale, change, ledger)
-      type(scheme_t), intent(in) :: scheme
-      real(wp), intent(in) :: tolerance      !< Newton's: a residual may be that share of the forces.
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: scale(:)       !< Sum of the magnitudes of the forces on every unknown [kN]. (unknowns)
-      real(wp), intent(in) :: change(:, :)   !< Change of the unknowns; displacements first [m]. (FIELDS, nodes)
+   pure subroutine book_creation(run, ledger)
+      type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: work
       integer :: i
@@ -326,16 +320,20 @@ contains
       ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
                                 ledger%kinetic_0, -ledger%skeleton)
       work = 0.0_wp
-      do i = 1, dofs%n
-         if (dofs%field(i) <= DISPLACEMENTS) work = work + scale(i)*abs(change(dofs%field(i), dofs%node(i)))
+      do i = 1, run%dofs%n
+         associate (f => run%dofs%field(i), node => run%dofs%node(i))
+            if (f <= DISPLACEMENTS) work = work + run%assembly%scale(i)*abs(run%next%x(f, node) - run%state%x(f, node))
+         end associate
       end do
+      ! A residual may be that share of the forces, whose magnitudes are the scale.
+      work = run%stage%tolerance*work
       ! Before any load has done more than that, such steps add up: nothing tells their energy from none.
-      if (ledger%largest_work < ledger%tolerated + tolerance*work) then
-         ledger%tolerated = ledger%tolerated + tolerance*work
+      if (ledger%largest_work < ledger%tolerated + work) then
+         ledger%tolerated = ledger%tolerated + work
       else
-         ledger%tolerated = max(ledger%tolerated, tolerance*work)
+         ledger%tolerated = max(ledger%tolerated, work)
       end if
-      if (scheme%has_inertia) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
+      if (run%scheme%has_inertia) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 
    !> Created energy up to which nothing is said: a share of the largest work, and what no balance can tell from zero.

@@ -150,7 +150,7 @@ contains
       character(*), parameter :: STRESS = 'effective stress, tension positive'
       type(h5_t) :: file
       type(field_t), allocatable :: list(:)
-      real(wp) :: x(FIELDS, size(run%state%x, 2)), cells(8, size(run%model%domain%mesh%t6, 2))
+      real(wp) :: x(FIELDS, size(run%state%x, 2)), cells(8, size(run%domain%mesh%t6, 2))
       character(:), allocatable :: path
       logical :: good
 
@@ -160,7 +160,7 @@ contains
       call put_text(file, 'kind', 'fields of mud_host')
       call put(file, 'time', [run%state%time], 's', 'time')
       allocate (list(0))
-      associate (domain => run%model%domain, state => run%state)
+      associate (domain => run%domain, state => run%state)
          call all_pressures(domain, state, x)
          call means(domain, state, cells)
          call add('nodes', 'displacement', 'm', 'u_r, u_z, 0', with_zero(state%x))
@@ -190,7 +190,7 @@ contains
       end associate
       call write_file(file, good)
       if (.not. good) call raise_unwritten(path, fault)
-      if (good) call write_xdmf(self, run%model%domain, list, fault)
+      if (good) call write_xdmf(self, run%domain, list, fault)
    contains
       subroutine add(center, name, unit, meaning, values)
          character(*), intent(in) :: center, name, unit, meaning

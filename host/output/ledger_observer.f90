@@ -16,6 +16,7 @@ module ledger_observer
    use run_observer, only: observer_t, FITS, BEGINS, STEP, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
+   use springs, only: add_mean_of_spring
    use texts, only: short
    use wall_clock, only: clock, add_elapsed
    use warnings, only: print_warning
@@ -68,7 +69,7 @@ contains
       case (FITS)
          if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
       case (BEGINS)
-         if (run%steps == 0 .and. any(run%model%domain%regions%stiffness_damping > 0.0_wp)) &
+         if (run%steps == 0 .and. any(run%domain%regions%stiffness_damping > 0.0_wp)) &
             allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
          if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS// &
                                                      indicator_columns(run%model), run%steps > 0, self%table, fault)
@@ -89,7 +90,7 @@ contains
       class(ledger_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp) :: force(run%model%dofs%n)
+      real(wp) :: force(run%dofs%n)
 
       associate (ledger => self%ledger, stage => run%stage)
          if (run%at%step == 1) then
@@ -99,9 +100,8 @@ contains
          end if
          call find_mean_forces(run, force)
          call book_step(force, run, self%damping_stress, ledger)
-         call book_creation(run%scheme, stage%tolerance, run%model%dofs, run%assembly%scale, run%next%x - run%state%x, &
-                            ledger)
-         self%indicators = indicators_of(run)
+         call book_creation(run, ledger)
+         self%indicators = indicators_of(run, ledger%kinetic)
          run%news%contact_work = ledger%contact
          if (.not. has_inertia(stage%kind)) return
          ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, &
@@ -123,7 +123,7 @@ contains
       integer :: i
 
       force = 0.0_wp
-      associate (dofs => run%model%dofs)
+      associate (dofs => run%dofs)
          if (allocated(run%system%contacts)) then
             t0 = clock()
             if (run%system%contacts%forces(dofs, run%state%x, before)) then
@@ -131,9 +131,9 @@ contains
             end if
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
-         do i = 1, size(run%constraint%added)
-            associate (one => run%constraint%added(i)%it)
-               if (one%acts) call one%add_means(dofs, run%scheme, run%state, run%next, force)
+         do i = 1, size(run%constraint%springs)
+            associate (one => run%constraint%springs(i))
+               if (one%acts) call add_mean_of_spring(one, dofs, run%scheme, run%state, run%next, force)
             end associate
          end do
       end associate

@@ -83,7 +83,7 @@ contains
       integer :: e, p, worst
 
       allocate (work(size(self%work)), lost(size(self%work)))
-      associate (m => run%model%domain)
+      associate (m => run%domain)
          !$omp parallel do num_threads(merge(m%threads, 1, size(m%region_of) >= WORTH_THREADS)) schedule(static) &
          !$omp default(shared) private(e)
          do e = 1, size(m%region_of)
@@ -121,7 +121,7 @@ contains
 
       work = 0.0_wp
       lost = .false.
-      associate (domain => run%model%domain, old => run%state, new => run%next)
+      associate (domain => run%domain, old => run%state, new => run%next)
          if (.not. is_present(new, e)) return
          du = new%x(:DISPLACEMENTS, domain%mesh%t6(:, e)) - old%x(:DISPLACEMENTS, domain%mesh%t6(:, e))
          do g = 1, domain%rule
@@ -143,8 +143,8 @@ contains
       integer, intent(in) :: worst   !< Point with the most work.
       real(wp) :: x(2)
 
-      associate (n => run%model%domain%rule)
-         x = run%model%domain%gauss(mod(worst - 1, n) + 1, (worst - 1)/n + 1)%x
+      associate (n => run%domain%rule)
+         x = run%domain%gauss(mod(worst - 1, n) + 1, (worst - 1)/n + 1)%x
       end associate
       call print_warning(now_in(run)//'shear localises. '//short(0.1_wp*nint(1000*run%news%localised))// &
          ' % of the shear work so far is done where the tangent of the soil has lost ellipticity (column localised '// &

@@ -177,9 +177,8 @@ contains
       real(wp) :: x(FIELDS, size(run%state%x, 2))
       integer :: i, e, g
 
-      associate (state => run%state, mesh => run%model%domain%mesh, gauss => run%model%domain%gauss, &
-                 n => run%model%domain%rule)
-         call all_pressures(run%model%domain, state, x)
+      associate (state => run%state, mesh => run%domain%mesh, gauss => run%domain%gauss, n => run%domain%rule)
+         call all_pressures(run%domain, state, x)
          call write_table(folder//'nodes_'//name, 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', &
                           reshape([(mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i), i=1, size(x, 2))], &
                                   [8, size(x, 2)]), fault)

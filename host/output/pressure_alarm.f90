@@ -58,10 +58,10 @@ contains
       type(lines_t), intent(inout) :: lines   !< Lines of the mesh; found when they are asked for first.
       logical, intent(inout) :: told
       real(wp) :: share
-      logical :: counts(size(run%model%domain%mesh%x, 2))
+      logical :: counts(size(run%domain%mesh%x, 2))
       integer :: node, e
 
-      associate (domain => run%model%domain, mesh => run%model%domain%mesh, x => run%next%x)
+      associate (domain => run%domain, mesh => run%domain%mesh, x => run%next%x)
          ! Linear pressures are those of the corners alone.
          if (told .or. .not. has_rates(run%stage%kind) .or. domain%n_p < 6) return
          ! Pressures that are no unknowns of the ground do not count.
@@ -89,8 +89,8 @@ contains
       integer :: e, g
 
       if (told) return
-      do e = 1, size(run%model%domain%region_of)
-         associate (m => run%model%domain, law => run%model%domain%regions(run%model%domain%region_of(e))%law)
+      do e = 1, size(run%domain%region_of)
+         associate (m => run%domain, law => run%domain%regions(run%domain%region_of(e))%law)
             if (.not. law%unguarded .or. .not. is_present(run%next, e)) cycle
             do g = 1, m%rule
                associate (stress => run%next%stress(:, (e - 1)*m%rule + g), x => m%gauss(g, e)%x)
@@ -112,7 +112,7 @@ contains
 
       if (told .or. run%constraint%drinks == 0) return
       told = .true.
-      associate (x => run%model%domain%mesh%x(:, run%model%dofs%node(run%constraint%drinks)))
+      associate (x => run%domain%mesh%x(:, run%dofs%node(run%constraint%drinks)))
          call print_warning(now_in(run)//'the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, '// &
             'or under rain, left its limit three times within the step, and keeps it although water enters there. '// &
             'Shorten the steps or refine the mesh there.')
@@ -126,8 +126,8 @@ contains
       logical, intent(inout) :: told
       integer :: node
 
-      if (told .or. .not. run%model%domain%with_w) return
-      associate (x => run%model%domain%mesh%x, p_w => run%next%x(AT_P_W, :))
+      if (told .or. .not. run%domain%with_w) return
+      associate (x => run%domain%mesh%x, p_w => run%next%x(AT_P_W, :))
          node = minloc(p_w(:size(x, 2)), dim=1)
          if (p_w(node) > -OVEN_DRY) return
          told = .true.

@@ -40,7 +40,7 @@ contains
          character(:), allocatable :: name
          integer :: i, k
 
-         name = trim(run%model%domain%mesh%groups(group)%name)//'.'//trim(SUFFIX(kind))
+         name = trim(run%domain%mesh%groups(group)%name)//'.'//trim(SUFFIX(kind))
          do i = 1, size(run%model%plates)
             associate (plate => run%model%plates(i))
                k = findloc(plate%coordinates%group, group, dim=1)
@@ -114,7 +114,7 @@ contains
       integer :: i, k
 
       call list_columns(run%model, run%stage, list)
-      allocate (sums(SUFFIXES, size(run%model%domain%mesh%groups)), source=0.0_wp)
+      allocate (sums(SUFFIXES, size(run%domain%mesh%groups)), source=0.0_wp)
       call add_reactions()
       call add_loads()
       do i = 1, size(run%model%plates)
@@ -128,19 +128,19 @@ contains
              (sums(list(2, i), list(1, i)), i=1, size(list, 2))]
    contains
       subroutine add_reactions()
-         integer :: by(run%model%dofs%n), air_by(size(run%model%domain%mesh%x, 2)), i, k, group(2)
+         integer :: by(run%dofs%n), air_by(size(run%domain%mesh%x, 2)), i, k, group(2)
          real(wp) :: w, a
 
          call prescribing_fixes(run%problem_t, run%state%time, by, air_by)
          sums(:DISPLACEMENTS, :) = forces_of_supports(run%model, by, run%system%reaction)
-         associate (dofs => run%model%dofs, constraint => run%constraint, reaction => run%system%reaction)
-            if (.not. run%scheme%has_rates .or. .not. run%model%domain%with_w) return
+         associate (dofs => run%dofs, constraint => run%constraint, reaction => run%system%reaction)
+            if (.not. run%scheme%has_rates .or. .not. run%domain%with_w) return
             do i = 1, size(air_by)
                if (dofs%of(AT_P_W, i) == 0) cycle
                w = reaction(dofs%of(AT_P_W, i))
                a = 0.0_wp
                k = by(dofs%of(AT_P_W, i))
-               if (run%model%domain%with_c) then
+               if (run%domain%with_c) then
                   a = reaction(dofs%of(AT_P_C, i))
                   k = max(k, by(dofs%of(AT_P_C, i)))
                   ! The first balance is that of both fluids; where the air pressure is given, that of the water.
@@ -165,11 +165,11 @@ contains
       end subroutine add_reactions
 
       subroutine add_loads()
-         real(wp) :: factor, vector(run%model%dofs%n)
+         real(wp) :: factor, vector(run%dofs%n)
          integer :: i
 
          do i = 1, size(run%model%loads)
-            associate (load => run%model%loads(i), field => run%model%dofs%field)
+            associate (load => run%model%loads(i), field => run%dofs%field)
                if (.not. acts_in(load%stages, run%stage%name)) cycle
                vector = force_of(load, 1.0_wp)
                factor = factor_at(run%model, load%amplitude, run%state%time - run%scheme%dt)

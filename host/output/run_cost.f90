@@ -20,8 +20,8 @@ contains
       character(:), allocatable :: text
       integer :: f
 
-      associate (field => run%model%dofs%field)
-         text = whole(run%model%dofs%n)//' unknowns ('//whole(count(field <= DISPLACEMENTS))//' displacements'
+      associate (field => run%dofs%field)
+         text = whole(run%dofs%n)//' unknowns ('//whole(count(field <= DISPLACEMENTS))//' displacements'
          do f = AT_P_W, AT_P_C
             if (any(field == f)) text = text//', '//whole(count(field == f))//trim(merge(' p_w', ' p_c', f == AT_P_W))
          end do

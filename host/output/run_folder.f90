@@ -1,9 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Observer that owns the folder of a run: one run at a time writes there, and a restart finds the run that it goes on
-!> with. The file `running` holds the number of the process that writes, and its host. That of a process of this host
-!> that has ended without removing it is taken over.
+!> with. A run holds a lock on the file `running`, which the system takes back when its process ends, however it does.
 module run_folder
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    use archive, only: archive_t
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use field_files, only: check_mesh
@@ -11,39 +10,43 @@ module run_folder
    use run_observer, only: observer_t, FITS, BEGINS, ENDS
    use run_state, only: run_t
    use scene_parts, only: FINGERPRINT_LENGTH
-   use texts, only: from_c, whole
    implicit none (type, external)
    private
    public :: folder_observer_t
 
    type, extends(observer_t) :: folder_observer_t
       character(FINGERPRINT_LENGTH) :: origin = ''   !< Fingerprint of the scene that began the run.
-      logical :: taken = .false.                     !< The file LOCK is ours.
+      integer(c_int) :: lock = -1                    !< Number of the locked file; -1: there is none.
    contains
       procedure :: exchange
       procedure :: hear
    end type folder_observer_t
-   character(*), parameter :: LOCK = 'running'
-   integer, parameter :: ATTEMPTS = 2   !< The second after the file of a dead process is removed.
-   integer, parameter :: NAME_LENGTH = 256   !< Longest name of a host.
+
+   character(*), parameter :: LOCK_FILE = 'running'
+   integer(c_int), parameter :: ALONE = 6, FREE = 8   !< Operations of flock: exclusive without waiting, unlock.
+   integer(c_int), parameter :: ACCESS = 438          !< For all to read and write, as the user's mask allows.
 
    interface
-      integer(c_int) function getpid() bind(c)
-         import :: c_int
-      end function getpid
+      integer(c_int) function creat(path, mode) bind(c)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: mode
+      end function creat
 
-      !> Group of a process, also of another user; -1: there is no such process.
-      integer(c_int) function getpgid(process) bind(c)
+      integer(c_int) function flock(file, operation) bind(c)
          import :: c_int
-         integer(c_int), value :: process
-      end function getpgid
+         integer(c_int), value :: file, operation
+      end function flock
 
-      !> The name of this host, ended by a zero; 0 if it is known.
-      integer(c_int) function gethostname(name, length) bind(c)
-         import :: c_char, c_int, c_size_t
-         character(kind=c_char), intent(out) :: name(*)
-         integer(c_size_t), value :: length
-      end function gethostname
+      integer(c_int) function close_number(file) bind(c, name='close')
+         import :: c_int
+         integer(c_int), value :: file
+      end function close_number
+
+      integer(c_int) function unlink(path) bind(c)
+         import :: c_char, c_int
+         character(kind=c_char), intent(in) :: path(*)
+      end function unlink
    end interface
 contains
    !> Exchanges the fingerprint of the scene that began the run.
@@ -61,6 +64,7 @@ contains
       integer, intent(in) :: event
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
+      integer(c_int) :: done
 
       select case (event)
       case (FITS)
@@ -70,91 +74,30 @@ contains
             self%origin = run%model%origin%fingerprint
             call make_folder(self%folder)
          end if
-         call lock_folder(self%folder, self%taken, fault)
+         call lock_folder(self%folder, self%lock, fault)
       case (ENDS)
-         if (self%taken) call remove_lock(self%folder)
+         if (self%lock < 0) return
+         done = unlink(self%folder//'/'//LOCK_FILE//c_null_char)
+         done = close_number(self%lock)
       end select
    end subroutine hear
 
-   !> Takes a folder; nothing is done where there is none. Fault EXIT_OUTPUT: another run writes to it.
-   subroutine lock_folder(folder, taken, fault)
+   !> Takes a folder; one that cannot be written to is told with its first table. Fault EXIT_OUTPUT: another run writes
+   !> to it.
+   subroutine lock_folder(folder, lock, fault)
       character(*), intent(in) :: folder
-      logical, intent(out) :: taken
+      integer(c_int), intent(out) :: lock
       type(fault_t), intent(inout) :: fault
-      character(NAME_LENGTH) :: host
-      integer :: unit, status, i
-      integer(c_int) :: owner
+      integer(c_int) :: done
 
-      taken = .false.
-      do i = 1, ATTEMPTS
-         open (newunit=unit, file=folder//'/'//LOCK, status='new', action='write', iostat=status)
-         taken = status == 0
-         if (taken) then
-            write (unit, '(i0,1x,a)') getpid(), this_host()
-            close (unit)
-            return
-         end if
-         call read_lock(folder, owner, host, status)
-         if (status > 0) return   ! A folder that cannot be written to is told with its first table.
-         if (status == 0) then
-            if (lives(owner, host)) then
-               call raise(fault, EXIT_OUTPUT, 'Process '//whole(int(owner))//' of '//trim(host)//' writes its '// &
-                          'results to '//folder//' (its file '''//LOCK//''' says so): wait for its end, or choose '// &
-                          'another --output. If that process is no run of mud_host any more, remove the file.')
-               return
-            end if
-         end if
-         call remove_lock(folder)
-      end do
+      lock = creat(folder//'/'//LOCK_FILE//c_null_char, ACCESS)
+      if (lock < 0) return
+      if (flock(lock, ALONE) == 0) return
+      ! A file system without locks refuses this too.
+      if (flock(lock, FREE) /= 0) return
+      done = close_number(lock)
+      lock = -1
+      call raise(fault, EXIT_OUTPUT, 'Another run writes its results to '//folder//' (it holds the file '''// &
+                 LOCK_FILE//''' there): wait for its end, or choose another --output.')
    end subroutine lock_folder
-
-   !> Whether another process may still write. Of another host nothing is known; a number may come again, as ours.
-   logical function lives(owner, host)
-      integer(c_int), intent(in) :: owner
-      character(*), intent(in) :: host
-      character(:), allocatable :: here
-      integer(c_int) :: own, group
-
-      here = this_host()
-      own = getpid()
-      group = getpgid(owner)
-      lives = host /= here .or. (owner > 0 .and. group >= 0 .and. owner /= own)
-   end function lives
-
-   !> The name of this host.
-   function this_host() result(host)
-      character(:), allocatable :: host
-      character(NAME_LENGTH, c_char) :: name
-
-      host = 'localhost'
-      name = ''
-      if (gethostname(name, int(NAME_LENGTH - 1, c_size_t)) /= 0) return
-      if (from_c(name) /= '') host = trim(from_c(name))
-   end function this_host
-
-   !> Reads the file. status: 0; below 0 where it says nothing, as that of a process that was killed while it wrote;
-   !> above 0 where it cannot be read.
-   subroutine read_lock(folder, owner, host, status)
-      character(*), intent(in) :: folder
-      integer(c_int), intent(out) :: owner
-      character(*), intent(out) :: host
-      integer, intent(out) :: status
-      integer :: unit, problem
-
-      owner = 0
-      host = ''
-      open (newunit=unit, file=folder//'/'//LOCK, status='old', action='read', iostat=status)
-      if (status /= 0) return
-      read (unit, *, iostat=problem) owner, host
-      close (unit)
-      if (problem /= 0) status = -1
-   end subroutine read_lock
-
-   subroutine remove_lock(folder)
-      character(*), intent(in) :: folder
-      integer :: unit, status
-
-      open (newunit=unit, file=folder//'/'//LOCK, status='old', iostat=status)
-      if (status == 0) close (unit, status='delete', iostat=status)
-   end subroutine remove_lock
 end module run_folder

@@ -107,12 +107,12 @@ contains
       most = [maxval([0.0_wp, abs(peaks%value(:DISPLACEMENTS, :))]), &
               maxval([0.0_wp, abs(peaks%value(DISPLACEMENTS + 1:, :))])]
       do i = 1, size(run%model%output%points)
-         associate (point => run%model%output%points(i), m => run%model%domain)
+         associate (point => run%model%output%points(i), m => run%domain)
             ! Pressures of an undrained region are no unknowns of its nodes: they follow from strains.
             follows = m%regions(m%region_of((point%gauss - 1)/m%rule + 1))%drainage == UNDRAINED
             do f = 1, FIELDS
                if (.not. abs(peaks%value(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
-               if (all(run%model%dofs%of(f, point%nodes) == 0) .and. .not. (follows .and. f > DISPLACEMENTS)) cycle
+               if (all(run%dofs%of(f, point%nodes) == 0) .and. .not. (follows .and. f > DISPLACEMENTS)) cycle
                write (unit, '(a)') trim(point%name)//'.'//trim(FIELD_NAMES(f))//' '// &
                   with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
                   with_unit(peaks%time(f, i), 's', peaks%dt(f, i))

@@ -45,10 +45,10 @@ contains
       logical, intent(in) :: verbose   !< With its memory.
       integer :: i
 
-      associate (mesh => run%model%domain%mesh)
+      associate (mesh => run%domain%mesh)
          write (output_unit, '(a)') trim(run%model%origin%name)//': '//whole(size(mesh%t6, 2))//' elements, '// &
-            whole(size(mesh%x, 2))//' nodes, '//whole(run%model%dofs%n)//' unknowns, '// &
-            whole(size(run%pattern%col))//' entries, '//whole(run%model%domain%threads)//' threads.'
+            whole(size(mesh%x, 2))//' nodes, '//whole(run%dofs%n)//' unknowns, '// &
+            whole(size(run%pattern%col))//' entries, '//whole(run%domain%threads)//' threads.'
       end associate
       if (verbose) write (output_unit, '(a)') size_of_run(run)
       do i = 1, size(run%model%stages)

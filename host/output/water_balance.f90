@@ -5,10 +5,9 @@
 module water_balance
    use archive, only: archive_t
    use linear_forces, only: water_through_dashpots
-   use degrees_of_freedom, only: dofs_t
    use faults, only: fault_t
    use kinds, only: wp
-   use porous_domain, only: domain_t, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
+   use porous_domain, only: pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use run_observer, only: observer_t, STEP, STAGE_ENDS
    use run_state, only: run_t
    use texts, only: short
@@ -71,12 +70,12 @@ contains
       type(run_t), intent(inout) :: run
       integer :: e
 
-      if (.not. run%scheme%has_rates .or. .not. run%model%domain%with_w) return
-      call book_boundaries(run%model%dofs, run, self%water)
-      do e = 1, size(run%model%domain%region_of)
-         if (is_present(run%state, e) .and. any(run%model%domain%regions(run%model%domain%region_of(e))%drainage == &
+      if (.not. run%scheme%has_rates .or. .not. run%domain%with_w) return
+      call book_boundaries(run, self%water)
+      do e = 1, size(run%domain%region_of)
+         if (is_present(run%state, e) .and. any(run%domain%regions(run%domain%region_of(e))%drainage == &
                                                 [COUPLED, UNDRAINED])) &
-            call book_storage(run%model%domain, e, run, self%water)
+            call book_storage(e, run, self%water)
       end do
    end subroutine book
 
@@ -90,8 +89,7 @@ contains
 
       associate (water => self%water, stage => run%stage)
          missing = water%received - water%left - water%gained
-         if (run%model%domain%full_rate .and. &
-             abs(missing) > max(ALARMING_SHARE*water%moved, INSIDE_SHARE*water%turned)) then
+         if (run%domain%full_rate .and. abs(missing) > max(ALARMING_SHARE*water%moved, INSIDE_SHARE*water%turned)) then
             of_what = short(100*abs(missing)/water%turned)//' % of what has moved in its pores'
             if (water%moved > 0.0_wp) of_what = short(100*abs(missing)/water%moved)//' % of what has come and gone'
             call print_warning('stage '//trim(stage%name)//': '//short(abs(missing))//' m3 of water are '// &
@@ -104,29 +102,28 @@ contains
 
    !> Adds what the pores of an element take up in a step: by their volume, their saturation and the pressure of the
    !> water.
-   pure subroutine book_storage(domain, e, run, water)
-      type(domain_t), intent(in) :: domain
+   pure subroutine book_storage(e, run, water)
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
       real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), p(2), parts(3), n, s
       integer :: g, at
 
-      associate (node => domain%mesh%t6(:, e), carriers => domain%carriers(:domain%n_carriers(e), e), &
+      associate (node => run%domain%mesh%t6(:, e), carriers => run%domain%carriers(:run%domain%n_carriers(e), e), &
                  old => run%state, new => run%next)
          du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
          rise(:, :size(carriers)) = new%x(AT_P_W:, carriers) - old%x(AT_P_W:, carriers)
       end associate
-      do g = 1, domain%rule
-         at = (e - 1)*domain%rule + g
-         associate (gp => domain%gauss(g, e), old => run%state, new => run%next)
+      do g = 1, run%domain%rule
+         at = (e - 1)*run%domain%rule + g
+         associate (gp => run%domain%gauss(g, e), old => run%state, new => run%next)
             s = 0.5_wp*(old%s(at) + new%s(at))
             n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
-            p = pressures_at(domain, e, g, rise)
+            p = pressures_at(run%domain, e, g, rise)
             parts(1) = s*(dot_product(gp%dn(:, 1), du(1, :)) + dot_product(gp%dn(:, 2), du(2, :)) &
                           + dot_product(gp%n_over_r, du(1, :)))
             parts(2) = n*(new%s(at) - old%s(at))
-            parts(3) = n*s*p(1)/domain%fluids%k_w
+            parts(3) = n*s*p(1)/run%domain%fluids%k_w
             water%gained = water%gained + gp%weight*sum(parts)
             water%turned = water%turned + gp%weight*(sum(abs(parts)) + ROUNDING*n*s)
          end associate
@@ -135,8 +132,7 @@ contains
 
    !> Adds what has come through loads and dashpots, what has left through prescribed pressures, and the
    !> magnitude of all that. Rain counts as water that did not leave.
-   pure subroutine book_boundaries(dofs, run, water)
-      type(dofs_t), intent(in) :: dofs
+   pure subroutine book_boundaries(run, water)
       type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
       real(wp) :: inflow, outflow, mean(OUTFLOWS)
@@ -145,9 +141,9 @@ contains
       ! The residual is that of the sum of both fluids where air is an unknown, of water where air is prescribed.
       associate (scheme => run%scheme, constraint => run%constraint, reaction => run%system%reaction)
          do node = 1, size(constraint%air)
-            w = dofs%of(AT_P_W, node)
+            w = run%dofs%of(AT_P_W, node)
             if (w == 0) cycle
-            c = dofs%of(AT_P_C, node)
+            c = run%dofs%of(AT_P_C, node)
             inflow = inflow_at(w)
             outflow = 0.0_wp
             if (constraint%fixed(w)) outflow = reaction(w)
@@ -162,7 +158,7 @@ contains
          mean = run%state%outflow + scheme%gamma_1*(run%next%outflow - run%state%outflow)
          water%left = water%left + scheme%dt*(mean(1) - mean(2))
          water%received = water%received &
-            - water_through_dashpots(constraint%linear, dofs, constraint%air, run%next%x - run%state%x)
+            - water_through_dashpots(constraint%linear, run%dofs, constraint%air, run%next%x - run%state%x)
       end associate
    contains
       !> Mean over the step [m3/s].

@@ -74,18 +74,12 @@ contains
    subroutine add(self, observer)
       class(observers_t), intent(inout) :: self
       class(observer_t), intent(in) :: observer
-      type(slot_t), allocatable :: longer(:)
-      integer :: i, n
+      type(slot_t) :: slot
 
-      n = 0
-      if (allocated(self%list)) n = size(self%list)
-      allocate (longer(n + 1))
-      do i = 1, n
-         call move_alloc(self%list(i)%observer, longer(i)%observer)
-      end do
-      allocate (longer(n + 1)%observer, source=observer)
-      if (allocated(self%folder)) longer(n + 1)%observer%folder = self%folder
-      call move_alloc(longer, self%list)
+      allocate (slot%observer, source=observer)
+      if (allocated(self%folder)) slot%observer%folder = self%folder
+      if (.not. allocated(self%list)) allocate (self%list(0))
+      self%list = [self%list, slot]
    end subroutine add
 
    !> Tells the observers an event. The first fault counts, and one that there is already stays.

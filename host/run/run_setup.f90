@@ -27,6 +27,8 @@ contains
       integer :: i
 
       run%model => model
+      run%domain => model%domain
+      run%dofs => model%dofs
       run%system%reuse = model%solver%reuse_factors
       run%system%sparse%ordering = model%solver%ordering
       call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
@@ -49,14 +51,14 @@ contains
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
 
-      call assemble(run%model%domain, run%model%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, &
+      call assemble(run%domain, run%dofs, run%pattern, make_scheme(DYNAMIC, 1.0_wp, 1.0_wp), run%state, &
                     run%next, .false., run%assembly)
       if (run%assembly%bad_element > 0) then
          call raise(fault, EXIT_MATERIAL, 'The initial state is refused by the material of element '// &
                     whole(run%assembly%bad_element)//'.')
          return
       end if
-      where (run%model%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
+      where (run%dofs%field > DISPLACEMENTS) run%constraint%offset = -run%assembly%residual
       run%next = run%state
    end subroutine keep_flow
 end module run_setup

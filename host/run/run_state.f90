@@ -68,7 +68,7 @@ contains
       call archive%exchange('iterations', run%iterations, '-', 'linear solves', least=0)
       call archive%exchange('cuts', run%cuts, '-', 'cuts', least=0)
       call archive%exchange('rate_evaluations', run%rate_evaluations, '-', 'rate evaluations of the material')
-      call exchange_state(run%model%domain, run%state, archive)
+      call exchange_state(run%domain, run%state, archive)
       call archive%exchange('largest', run%system%largest, 'kN', 'largest scale of every field')
       do i = 1, size(run%terms)
          call run%terms(i)%term%exchange(run%problem_t, archive)
@@ -76,13 +76,13 @@ contains
       if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
                                                            size(run%model%contacts))
       call exchange_control(run%control, archive)
-      if (allocated(run%system%contacts)) call exchange_pairs(run%model%dofs%n, run%system%extra, archive)
+      if (allocated(run%system%contacts)) call exchange_pairs(run%dofs%n, run%system%extra, archive)
       if (.not. archive%reading .or. .not. archive%good) return
       run%stage => run%model%stages(run%at%stage)
       run%state%gravity = gravity_at(run%model, run%state%time)
       call copy_state(run%state, run%next)
       if (.not. allocated(run%system%extra)) return
-      call make_pattern(run%model%dofs%n, run%model%dofs%element, run%system%extra, run%pattern)
+      call make_pattern(run%dofs%n, run%dofs%element, run%system%extra, run%pattern)
       deallocate (run%assembly%values)
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine exchange_run

@@ -27,8 +27,8 @@ contains
       type(balance_t), intent(out) :: balance
       type(run_t) :: trial
       real(wp), allocatable :: forces(:), touched(:)
-      real(wp) :: areas(2*DISPLACEMENTS, run%model%dofs%n), least, standing
-      real(wp), dimension(run%model%dofs%n) :: stress, unbalanced
+      real(wp) :: areas(2*DISPLACEMENTS, run%dofs%n), least, standing
+      real(wp), dimension(run%dofs%n) :: stress, unbalanced
       integer :: i
 
       trial = run
@@ -36,12 +36,12 @@ contains
       trial%state%a = 0.0_wp
       trial%next = trial%state
       if (allocated(trial%system%contacts)) call trial%system%contacts%act(spread(.false., 1, size(run%model%contacts)))
-      if (.not. unbalanced_forces(run%model%domain, run%model%dofs, trial%solution_t, forces)) return
+      if (.not. unbalanced_forces(trial%solution_t, forces)) return
       where (abs(forces) < ROUNDING*trial%assembly%scale) forces = 0.0_wp
       touched = 0*forces
       if (allocated(trial%system%contacts)) then
          call enter_stage(trial, 1)
-         if (.not. unbalanced_forces(run%model%domain, run%model%dofs, trial%solution_t, touched)) return
+         if (.not. unbalanced_forces(trial%solution_t, touched)) return
          touched = touched - forces
       end if
       call add_weight_of_water(run, forces, standing)
@@ -61,7 +61,7 @@ contains
       if (balance%matters) i = maxloc(unbalanced, dim=1, mask=unbalanced > NOTABLE*stress)
       balance%stress = unbalanced(i)
       balance%there = stress(i)
-      balance%x = run%model%domain%mesh%x(:, run%model%dofs%node(i))
+      balance%x = run%domain%mesh%x(:, run%dofs%node(i))
    end subroutine find_imbalance
 
    !> Adds the pressures at time 0 that are those of the water at their edges: water that stands there did so before.
@@ -91,7 +91,7 @@ contains
 
       most = 0.0_wp
       if (load%kind /= LOAD_PRESSURE .or. .not. acts_in(load%stages, run%model%stages(1)%name)) return
-      associate (x => run%model%domain%mesh%x, edges => run%model%domain%mesh%groups(load%group)%edges)
+      associate (x => run%domain%mesh%x, edges => run%domain%mesh%groups(load%group)%edges)
          do k = 1, size(edges, 2)
             do i = 1, 2
                given = factor_at(run%model, load%amplitude, 0.0_wp)*(load%value &
@@ -158,7 +158,7 @@ contains
          associate (one => run%model%plates(i))
             if (one%penalty > 0.0_wp .or. one%group == 0) cycle
             load = 0.0_wp
-            load(unknowns_of(one, run%model%dofs)) = plate_loads(run%model, one, 0.0_wp)
+            load(unknowns_of(one, run%dofs)) = plate_loads(run%model, one, 0.0_wp)
             call carry(load)
          end associate
       end do
@@ -184,7 +184,7 @@ contains
 
       areas = 0.0_wp
       stress = 0.0_wp
-      associate (m => run%model%domain)
+      associate (m => run%domain)
          do e = 1, size(m%mesh%t6, 2)
             if (.not. is_present(run%state, e)) cycle
             do g = 1, m%rule
@@ -199,7 +199,7 @@ contains
                      part = gp%weight*[max(0.0_wp, gp%dn(k, :)), max(0.0_wp, -gp%dn(k, :))]
                   end associate
                   do f = 1, DISPLACEMENTS
-                     at = run%model%dofs%of(f, m%mesh%t6(k, e))
+                     at = run%dofs%of(f, m%mesh%t6(k, e))
                      if (at == 0) cycle
                      areas(:, at) = areas(:, at) + part
                      stress(at) = max(stress(at), total)

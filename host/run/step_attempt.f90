@@ -72,12 +72,12 @@ contains
       call prepare_rates(dt, run)
       run%scheme = scheme_of(run, dt)
       if (any(run%model%fixes%acceleration)) call follow_accelerations(run%problem_t)
-      call take_step(run%model%domain, run%model%dofs, run%solution_t)
+      call take_step(run%solution_t)
       if (run%log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
          a0 = run%state%a
          run%state%a = 0.0_wp
-         call take_step(run%model%domain, run%model%dofs, run%solution_t)
+         call take_step(run%solution_t)
          if (run%log%outcome /= CONVERGED) run%state%a = a0
       end if
       run%iterations = run%iterations + run%log%iterations
@@ -122,7 +122,7 @@ contains
 
       call copy_state(run%state, run%next)
       run%next%gravity = gravity_at(run%model, run%state%time)
-      if (unbalanced_forces(run%model%domain, run%model%dofs, run%solution_t, forces)) &
+      if (unbalanced_forces(run%solution_t, forces)) &
          call move_alloc(forces, run%at%sudden)
    end subroutine spread_sudden_loads
 
@@ -165,7 +165,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (any(run%model%fixes%acceleration)) call starting_accelerations(run%problem_t)
-      call start_accelerations(run%model%domain, run%model%dofs, run%solution_t)
+      call start_accelerations(run%solution_t)
       if (run%log%outcome /= CONVERGED) call explain_failure(run, 0.0_wp, fault)
    end subroutine first_accelerations
 end module step_attempt

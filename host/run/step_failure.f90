@@ -33,7 +33,7 @@ contains
 
       time = run%state%time + dt
       place = 'Stage '//trim(run%stage%name)//', time '//short(time)//' s, step '//short(dt)//' s: '
-      associate (m => run%model%domain, log => run%log)
+      associate (m => run%domain, log => run%log)
          select case (log%outcome)
          case (MATERIAL_FAILED)
             e = run%assembly%bad_element
@@ -69,19 +69,19 @@ contains
                        'without contact.')
          case (SOLVER_FAILED)
             call raise(fault, EXIT_SOLVER, place//'the linear solver failed; is there enough memory for '// &
-                       whole(run%model%dofs%n)//' unknowns?')
+                       whole(run%dofs%n)//' unknowns?')
          case (EQUATIONS_LOST)
             ! The first entry that is not finite, else the largest.
             i = findloc(ieee_is_finite(run%assembly%values), .false., dim=1)
             if (i == 0) i = maxloc(abs(run%assembly%values), dim=1)
-            node = run%model%dofs%node(count(run%pattern%row <= i))
+            node = run%dofs%node(count(run%pattern%row <= i))
             call raise(fault, EXIT_CONVERGENCE, place//'the equations have numbers that are not finite or too '// &
                        'large to be solved; the largest slope is '//short(run%assembly%values(i))//' at '// &
                        place_of(run%model, node)//': look at the tangent of the material there, and at the loads'// &
                        advice(run, time))
          case default
             node = 1
-            if (log%worst_unknown > 0) node = run%model%dofs%node(log%worst_unknown)
+            if (log%worst_unknown > 0) node = run%dofs%node(log%worst_unknown)
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations'//soft_points(run)//'; '//what_is_left(run)//' (allowed '// &
                        short(run%stage%tolerance)//'), worst at '//place_of(run%model, node)//advice(run, time))
@@ -150,7 +150,7 @@ contains
       text = ''
       if (run%assembly%replaced == 0) return
       e = maxloc(run%assembly%soft, dim=1)
-      associate (mesh => run%model%domain%mesh)
+      associate (mesh => run%domain%mesh)
          x = sum(mesh%x(:, mesh%t6(:3, e)), dim=2)/3
       end associate
       text = ', also with the elastic stiffness of '//whole(run%assembly%replaced)// &
@@ -163,12 +163,12 @@ contains
    function unequal_slopes(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
-      real(wp) :: slope(run%model%dofs%n)
-      logical :: free(run%model%dofs%n)
+      real(wp) :: slope(run%dofs%n)
+      logical :: free(run%dofs%n)
       integer :: i, least, largest
 
       text = ''
-      associate (dofs => run%model%dofs, values => run%assembly%values)
+      associate (dofs => run%dofs, values => run%assembly%values)
          slope = [(values(place_in(run%pattern, i, i)), i=1, dofs%n)]
          if (.not. all(ieee_is_finite(slope))) return
          free = .not. run%constraint%fixed .and. dofs%field <= DISPLACEMENTS .and. slope > 0.0_wp

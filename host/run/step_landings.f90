@@ -165,7 +165,7 @@ contains
    function begins_suddenly(run) result(at_once)
       type(run_t), intent(in) :: run   !< With what the stage prescribes at its start.
       logical :: at_once
-      real(wp) :: load(run%model%dofs%n), before(run%model%dofs%n)
+      real(wp) :: load(run%dofs%n), before(run%dofs%n)
       integer :: i, k
 
       associate (x => run%state%x, c => run%constraint, number => run%at%stage)
@@ -175,8 +175,8 @@ contains
          at_once = norm2(load - before) > SAME*norm2(load)
          if (number == 1) at_once = at_once .or. abs(run%state%gravity) > 0.0_wp .or. &
             any(abs(x(AT_P_W:AT_P_C, :) - spread(x(AT_P_W:AT_P_C, 1), 2, size(x, 2))) > SAME*maxval(abs(x(AT_P_W:, :))))
-         do i = 1, run%model%dofs%n
-            associate (f => run%model%dofs%field(i), node => run%model%dofs%node(i))
+         do i = 1, run%dofs%n
+            associate (f => run%dofs%field(i), node => run%dofs%node(i))
                if (c%fixed(i)) at_once = at_once .or. abs(c%target(i) - x(f, node)) > SAME*maxval(abs(x(f, :)))
             end associate
          end do

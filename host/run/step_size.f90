@@ -93,8 +93,8 @@ contains
       integer :: i
 
       depends_on_path = .false.
-      do i = 1, size(run%model%domain%regions)
-         depends_on_path = depends_on_path .or. .not. run%model%domain%regions(i)%law%has_energy
+      do i = 1, size(run%domain%regions)
+         depends_on_path = depends_on_path .or. .not. run%domain%regions(i)%law%has_energy
       end do
    end function depends_on_path
 
@@ -208,7 +208,7 @@ contains
             c%touching = touching
             c%located = .false.
          end if
-         c%scale = scales(run, size(run%state%x, 2) - size(run%model%domain%bodies))
+         c%scale = scales(run, size(run%state%x, 2) - size(run%domain%bodies))
       end associate
    end subroutine judge_step
 
@@ -262,7 +262,7 @@ contains
       integer :: bodies, by
 
       associate (c => run%control, dt => run%scheme%dt)
-         bodies = size(run%state%x, 2) - size(run%model%domain%bodies)
+         bodies = size(run%state%x, 2) - size(run%domain%bodies)
          shares = field_norms(error(:, :bodies))/scales(run, bodies)
          shares(:DISPLACEMENTS) = max(shares(:DISPLACEMENTS), share_of_plates(error, bodies, run))
          c%error = maxval(shares, mask=known)

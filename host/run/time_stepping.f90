@@ -4,7 +4,7 @@ module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
    use convergence, only: control_t
-   use porous_domain, only: copy_state, take_over
+   use porous_domain, only: copy_state
    use run_observer, only: observers_t, FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, &
                            ENDS
    use run_state, only: run_t, enter_stage
@@ -58,8 +58,8 @@ contains
       call begin_stage(begins, run, fault)
       do while (fault%code == 0)
          if (is_over(run)) exit
-         call follow_newton(run%newton%tolerance, run%model%domain%regions)
-         run%newton%roughness = roughness(run%model%domain%regions)
+         call follow_newton(run%newton%tolerance, run%domain%regions)
+         run%newton%roughness = roughness(run%domain%regions)
          run%newton%negligible = negligible_changes(run)
          call try_step(next_step(run), run, accepted, fault)
          if (fault%code /= 0) return
@@ -92,7 +92,7 @@ contains
             call run%terms(i)%term%accept(run%problem_t, run%dissipated)
          end do
          call keep_step(run)
-         call take_over(run%next, run%state)
+         call copy_state(run%next, run%state)
          if (.not. stage%controlled) at%nominal = min(at%nominal*stage%dt_growth, max(stage%dt_max, stage%dt))
          at%good = at%good + 1
          if (at%good >= GOOD_STEPS .and. at%factor < 1.0_wp) then
@@ -114,7 +114,7 @@ contains
 
       stretched = 0.0_wp
       if (allocated(run%system%contacts)) call run%system%contacts%stretch(run%state%x, stretched)
-      run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(run%model%domain%bodies)) = 0.0_wp
+      run%state%x(:DISPLACEMENTS, :size(run%state%x, 2) - size(run%domain%bodies)) = 0.0_wp
       run%state%x(:DISPLACEMENTS, :) = run%state%x(:DISPLACEMENTS, :) + stretched
       do i = 1, size(run%model%plates)
          associate (plate => run%model%plates(i))

@@ -16,7 +16,7 @@ module convergence
    private
    public :: control_t, log_t, measure, good_enough, field_scales, water_of, water_scale, body_scale, is_body
    public :: rounding_in
-   public :: note_stagnation, is_in_vain
+   public :: note_stagnation, MOST_IN_VAIN
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
    integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
@@ -35,7 +35,8 @@ module convergence
    !> material without an elastic domain takes noise for reversals and becomes stiffer (docs/theory/host.md section 6).
    real(wp), parameter :: LINEAR_SHARE = 1.0e-5_wp
    integer, parameter :: PATIENCE = 6          !< Iterations without progress after which the error stagnates.
-   integer, parameter :: MOST_IN_VAIN = 20     !< Iterations without progress after which no further one helps.
+   !> Iterations without progress after which no further one helps; measures that are not of the fields do not tell.
+   integer, parameter :: MOST_IN_VAIN = 20
    real(wp), parameter :: PROGRESS = 0.5_wp    !< Share of the smallest error so far: more is no progress.
    real(wp), parameter :: MOST_KEPT = 0.9_wp   !< Share of a correction that the next one keeps: slower ones are not
                                                !< trusted.
@@ -159,14 +160,6 @@ contains
       log%stagnated = log%since_best >= PATIENCE .and. &
                       error <= min(MOST_ROUGH, control%roughness*max(1.0_wp, log%forces_over_scale))
    end subroutine note_stagnation
-
-   !> Whether the iteration leads nowhere: many iterations have not halved the smallest error. Other measures than those
-   !> of the fields do not tell. docs/theory/host.md section 5.2.
-   pure logical function is_in_vain(log) result(in_vain)
-      type(log_t), intent(in) :: log
-
-      in_vain = log%since_best >= MOST_IN_VAIN
-   end function is_in_vain
 
    !> Scales that the residuals of the fields are small against; rows of prescribed unknowns do not count.
    !> docs/theory/host.md section 5.1. Of displacements [kN], of pressures [m3/s].

@@ -5,23 +5,23 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use conjugate_residuals, only: solve_by_factors, INACCURATE, NOT_FINITE
-   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, is_in_vain, linear_tolerance, &
-                          rounding_in, water_of, BY_FORCES, BY_CHANGE
+   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, linear_tolerance, &
+                          rounding_in, water_of, BY_FORCES, BY_CHANGE, MOST_IN_VAIN
    use linear_forces, only: add_linear_forces
    use degrees_of_freedom, only: dofs_t
-   use equation_assembly, only: assembly_t, assemble, follow_slopes_first
+   use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
-   use porous_domain, only: domain_t, model_state_t
-   use prescribed_values, only: constraint_t, constrain, loads_of_water
+      use prescribed_values, only: constraint_t, constrain, loads_of_water
    use stress_tolerance, only: follow_newton, is_tight
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use solution, only: solution_t
-   use sparsity_pattern, only: pattern_t, place_of
+   use sparsity_pattern, only: place_of
+   use springs, only: add_spring
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
    private
@@ -56,9 +56,7 @@ contains
    !> docs/theory/host.md section 5. The outcome of its log says how it ends: CONVERGED; NOT_CONVERGED after
    !> max_iterations or beyond an error of 1e10; MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see
    !> assembly, contacts); BODY_FREE with a singular matrix; EQUATIONS_LOST where they are not finite; SOLVER_FAILED.
-   subroutine take_step(domain, dofs, solution)
-      type(domain_t), intent(inout) :: domain   !< The tolerance of its laws changes, see stress_tolerance.
-      type(dofs_t), intent(in) :: dofs
+   subroutine take_step(solution)
       type(solution_t), intent(inout) :: solution
       type(iterate_t) :: at
       integer :: status
@@ -66,17 +64,17 @@ contains
       at%t0 = clock()
       solution%log = log_t()
       associate (s => solution, log => solution%log, system => solution%system)
-         call begin_step(domain, dofs, solution, at)
+         call begin_step(solution, at)
          if (log%outcome /= CONVERGED) return
          do
-            call make_equations(domain, dofs, solution, at)
+            call make_equations(solution, at)
             if (log%outcome /= CONVERGED) then
                if (.not. at%guessed .or. log%iterations > 0) return
                call drop_guess(solution, at)
                cycle
             end if
             if (log%iterations > 0) then
-               call judge_iterate(domain, dofs, solution, at)
+               call judge_iterate(solution, at)
                if (at%done) exit
                if (log%outcome /= CONVERGED) return
                if (at%again) cycle
@@ -84,15 +82,15 @@ contains
                if (.not. at%with_slopes) then
                   at%with_slopes = .true.
                   s%assembly%source = AS_BEFORE
-                  call make_equations(domain, dofs, solution, at)
+                  call make_equations(solution, at)
                   if (log%outcome /= CONVERGED) return
                end if
             end if
-            call constrain(dofs, s%pattern, s%constraint, s%next%x, s%assembly%values, at%rhs)
-            if (log%iterations == 0) call find_roundings(domain, dofs, solution, at)
+            call constrain(solution%dofs, s%pattern, s%constraint, s%next%x, s%assembly%values, at%rhs)
+            if (log%iterations == 0) call find_roundings(solution, at)
             ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
             if (all(s%newton%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
-            call solve_step(dofs, s%pattern, s%constraint, s%assembly, linear_tolerance(s%newton), at%rhs, system, &
+            call solve_step(s%dofs, s%pattern, s%constraint, s%assembly, linear_tolerance(s%newton), at%rhs, system, &
                             at%dx, status)
             if (needs_stiffness(status, system, s%assembly%fallback)) then
                at%with_slopes = .true.
@@ -103,7 +101,7 @@ contains
                log%outcome = outcome_of(status)
                return
             end if
-            call correct(dofs, solution, at)
+            call correct(solution, at)
          end do
          ! Those of iterates on the way, and of steps that fail, may be of any size.
          system%largest = max(system%largest, log%forces)
@@ -115,27 +113,25 @@ contains
    end subroutine take_step
 
    !> Sets a step at its first guess, and says how closely its passes are integrated.
-   subroutine begin_step(domain, dofs, solution, at)
-      type(domain_t), intent(inout) :: domain
-      type(dofs_t), intent(in) :: dofs
+   subroutine begin_step(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
       associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
                  system => solution%system, scheme => solution%scheme, control => solution%newton, log => solution%log)
-         allocate (at%rhs(dofs%n), at%dx(dofs%n))
+         allocate (at%rhs(solution%dofs%n), at%dx(solution%dofs%n))
          at%guessed = .not. control%no_predictor
          new%time = old%time + scheme%dt
-         call begin_passes(scheme, solution%constraint, control, assembly)
+         call begin_passes(scheme, control, solution)
          ! Laws that change over the step are its own.
-         call follow_newton(control%tolerance, domain%regions)
-         at%rough = is_tight(domain%regions) .and. .not. allocated(new%laws)
+         call follow_newton(control%tolerance, solution%domain%regions)
+         at%rough = is_tight(solution%domain%regions) .and. .not. allocated(new%laws)
          if (at%rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES), &
-                                         control%tolerance, domain, at)
+                                         solution, at)
          if (allocated(system%contacts)) then
             call system%contacts%follow_turns(fresh=.true.)
             if (assembly%with_change) then
-               log%outcome = merge(CONVERGED, CONTACT_FAILED, system%contacts%forces(dofs, old%x, at%touched))
+               log%outcome = merge(CONVERGED, CONTACT_FAILED, system%contacts%forces(solution%dofs, old%x, at%touched))
                if (log%outcome /= CONVERGED) return
             end if
          end if
@@ -160,20 +156,20 @@ contains
 
    !> Integrates the stresses of the next pass to a share of an error of Newton's method: the first passes cost less.
    !> docs/theory/host.md section 5.1.
-   subroutine follow_error(error, tolerance, domain, at)
-      real(wp), intent(in) :: error, tolerance   !< [-]; of Newton's method.
-      type(domain_t), intent(inout) :: domain
+   subroutine follow_error(error, solution, at)
+      real(wp), intent(in) :: error   !< [-]
+      type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
-      at%rough = error > tolerance/STRESS_SHARE
-      call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), tolerance, at%rough), domain%regions)
+      associate (tolerance => solution%newton%tolerance)
+         at%rough = error > tolerance/STRESS_SHARE
+         call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), tolerance, at%rough), solution%domain%regions)
+      end associate
    end subroutine follow_error
 
    !> Makes the residual of the iterate, with minus sign in at%rhs, and its slopes where they are asked for.
    !> log%outcome: CONTACT_FAILED, MATERIAL_FAILED where these refuse it.
-   subroutine make_equations(domain, dofs, solution, at)
-      type(domain_t), intent(in) :: domain
-      type(dofs_t), intent(in) :: dofs
+   subroutine make_equations(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
       real(wp) :: spent
@@ -183,13 +179,13 @@ contains
                  tolerance => solution%newton%tolerance, log => solution%log)
          spent = 0.0_wp
          call add_elapsed(system%seconds(T_REST), at%t0)
-         if (.not. update_contacts(system, dofs, pattern, old%x + scheme%l_f*(new%x - old%x), at%with_slopes, &
+         if (.not. update_contacts(system, solution%dofs, pattern, old%x + scheme%l_f*(new%x - old%x), at%with_slopes, &
                                    assembly)) then
             log%outcome = CONTACT_FAILED
             return
          end if
          call add_elapsed(system%seconds(T_CONTACT), at%t0)
-         call assemble(domain, dofs, pattern, scheme, old, new, at%with_slopes, assembly)
+         call assemble(solution%domain, solution%dofs, pattern, scheme, old, new, at%with_slopes, assembly)
          system%n_pass = system%n_pass + 1
          log%rate_evaluations = log%rate_evaluations + assembly%rate_evaluations
          call add_elapsed(spent, at%t0)
@@ -199,8 +195,7 @@ contains
             log%outcome = MATERIAL_FAILED
             return
          end if
-         call add_what_acts(dofs, pattern, scheme, solution%constraint, old, new, at%with_slopes, at%touched, &
-                            assembly, system, at%rhs, at%t0)
+         call add_what_acts(scheme, at%with_slopes, at%touched, solution, at%rhs, at%t0)
          assembly%unresolved = at%rounded(1)/tolerance
          if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1)) &
                                                                /tolerance
@@ -210,9 +205,7 @@ contains
 
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
    !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.
-   subroutine judge_iterate(domain, dofs, solution, at)
-      type(domain_t), intent(inout) :: domain
-      type(dofs_t), intent(in) :: dofs
+   subroutine judge_iterate(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
       real(wp) :: norm
@@ -221,10 +214,10 @@ contains
       at%again = .false.
       associate (constraint => solution%constraint, assembly => solution%assembly, system => solution%system, &
                  control => solution%newton, log => solution%log)
-         call choose_sides(dofs, solution%pattern, assembly%values, solution%next%x, at%rhs, assembly%scale, &
+         call choose_sides(solution%dofs, solution%pattern, assembly%values, solution%next%x, at%rhs, assembly%scale, &
                            control%tolerance, constraint, turned)
          if (allocated(system%contacts)) turned = turned .or. system%contacts%turns
-         call measure(dofs, constraint, assembly, at%rhs, system%rounding, system%largest, log)
+         call measure(solution%dofs, constraint, assembly, at%rhs, system%rounding, system%largest, log)
          norm = norm2(pack(at%rhs, .not. constraint%fixed))
          ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
          if (log%iterations == 1) then
@@ -239,41 +232,36 @@ contains
             good = good_enough(control, log)
             at%done = good .and. .not. at%rough
             at%again = good .and. at%rough
-            if (at%again) call follow_error(0.0_wp, control%tolerance, domain, at)
+            if (at%again) call follow_error(0.0_wp, solution, at)
             if (good) return
             call note_stagnation(control, log)
             at%done = log%stagnated
             if (at%done) return
-            if (at%rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0), control%tolerance, &
-                                            domain, at)
+            if (at%rough) call follow_error(merge(0.0_wp, maxval(log%error), log%since_best > 0), solution, at)
          end if
-         if (log%iterations >= control%max_iterations .or. is_in_vain(log) .or. .not. all(log%error < HOPELESS)) &
-            log%outcome = NOT_CONVERGED
+         ! docs/theory/host.md section 5.2.
+         if (log%iterations >= control%max_iterations .or. log%since_best >= MOST_IN_VAIN .or. &
+             .not. all(log%error < HOPELESS)) log%outcome = NOT_CONVERGED
       end associate
    end subroutine judge_iterate
 
    !> Finds what no residual of a step can be told from, before its first solution. A prescribed motion that strains
    !> nothing leaves the rounding of the forces that it asked for, and no other.
-   subroutine find_roundings(domain, dofs, solution, at)
-      type(domain_t), intent(in) :: domain
-      type(dofs_t), intent(in) :: dofs
+   subroutine find_roundings(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
-      associate (system => solution%system, constraint => solution%constraint, assembly => solution%assembly, &
-                 scheme => solution%scheme, tolerance => solution%newton%tolerance)
-         system%rounding = rounding_in(scheme%has_inertia)/tolerance*asked_for(dofs, at%rhs)
-         system%rounding(AT_P_C) = max(system%rounding(AT_P_C), &
-            rounding_of_saturation(domain, dofs, constraint, solution%state, scheme)/tolerance)
-         at%rounded = rounding_of_unknowns(dofs, solution%pattern, constraint, assembly%values, solution%next%x)
+      associate (system => solution%system, assembly => solution%assembly, tolerance => solution%newton%tolerance)
+         system%rounding = rounding_in(solution%scheme%has_inertia)/tolerance*asked_for(solution%dofs, at%rhs)
+         system%rounding(AT_P_C) = max(system%rounding(AT_P_C), rounding_of_saturation(solution)/tolerance)
+         at%rounded = rounding_of_unknowns(solution)
          system%rounding = max(system%rounding, at%rounded/tolerance)
          assembly%unresolved = max(assembly%unresolved, at%rounded(1)/tolerance)
       end associate
    end subroutine find_roundings
 
    !> Adds a linear solution to the iterate.
-   subroutine correct(dofs, solution, at)
-      type(dofs_t), intent(in) :: dofs
+   subroutine correct(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
@@ -282,7 +270,7 @@ contains
       if (allocated(solution%system%contacts)) call solution%system%contacts%follow_turns(fresh=.false.)
       associate (old => solution%state, new => solution%next, log => solution%log)
          log%before = log%changed
-         call add_correction(dofs, at%dx, new%x, log%correction, log%changed)
+         call add_correction(solution%dofs, at%dx, new%x, log%correction, log%changed)
          call advance_rates(solution%scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       end associate
       at%with_slopes = .false.
@@ -313,126 +301,117 @@ contains
    end function needs_stiffness
 
    !> Sets what the passes of a step over the elements are asked for.
-   pure subroutine begin_passes(scheme, constraint, control, assembly)
+   pure subroutine begin_passes(scheme, control, solution)
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
       type(control_t), intent(in) :: control
-      type(assembly_t), intent(inout) :: assembly
+      type(solution_t), intent(inout) :: solution
 
-      assembly%air = constraint%air
-      assembly%with_change = control%measure == BY_CHANGE
-      assembly%rounding_share = merge(rounding_in(scheme%has_inertia)/control%tolerance, 0.0_wp, assembly%with_change)
-      assembly%fallback = NO_FALLBACK
-      call follow_slopes_first(assembly)
+      associate (assembly => solution%assembly)
+         assembly%air = solution%constraint%air
+         assembly%with_change = control%measure == BY_CHANGE
+         assembly%rounding_share = merge(rounding_in(scheme%has_inertia)/control%tolerance, 0.0_wp, &
+                                         assembly%with_change)
+         assembly%fallback = NO_FALLBACK
+         call follow_slopes_first(assembly)
+      end associate
    end subroutine begin_passes
 
    !> Error that the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the
    !> free balances of air [m3/s]. docs/theory/host.md section 5.1.
-   pure real(wp) function rounding_of_saturation(domain, dofs, constraint, state, scheme) result(rounding)
-      type(domain_t), intent(in) :: domain
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      type(model_state_t), intent(in) :: state
-      type(scheme_t), intent(in) :: scheme
-      real(wp) :: pores(dofs%n)
+   pure real(wp) function rounding_of_saturation(solution) result(rounding)
+      type(solution_t), intent(in) :: solution
+      real(wp) :: pores(solution%dofs%n)
       integer :: e, g, i, p, at, n_p
 
       rounding = 0.0_wp
-      if (.not. domain%with_c .or. .not. scheme%has_rates) return
+      if (.not. solution%domain%with_c .or. .not. solution%scheme%has_rates) return
       pores = 0.0_wp
-      do e = 1, size(domain%mesh%t6, 2)
-         n_p = domain%n_carriers(e)
-         if (n_p == 0 .or. .not. domain%regions(domain%region_of(e))%with_c) cycle
+      do e = 1, size(solution%domain%mesh%t6, 2)
+         n_p = solution%domain%n_carriers(e)
+         if (n_p == 0 .or. .not. solution%domain%regions(solution%domain%region_of(e))%with_c) cycle
          do i = 1, n_p
-            at = dofs%element(size(domain%mesh%t6, 1)*DISPLACEMENTS + n_p + i, e)
+            at = solution%dofs%element(size(solution%domain%mesh%t6, 1)*DISPLACEMENTS + n_p + i, e)
             if (at == 0) cycle
-            do g = 1, domain%rule
-               p = (e - 1)*domain%rule + g
-               associate (gp => domain%gauss(g, e))
-                  pores(at) = pores(at) + gp%weight*abs(gp%m(i))*state%e(p)/(1 + state%e(p))
+            do g = 1, solution%domain%rule
+               p = (e - 1)*solution%domain%rule + g
+               associate (gp => solution%domain%gauss(g, e), ratio => solution%state%e(p))
+                  pores(at) = pores(at) + gp%weight*abs(gp%m(i))*ratio/(1 + ratio)
                end associate
             end do
          end do
       end do
-      rounding = epsilon(1.0_wp)/scheme%dt*norm2(pack(pores, .not. constraint%fixed))
+      rounding = epsilon(1.0_wp)/solution%scheme%dt*norm2(pack(pores, .not. solution%constraint%fixed))
    end function rounding_of_saturation
 
    !> Change of the balances by a rounding of every unknown, by the entries of the matrix: the norms over the free rows
    !> of every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces. Of
    !> displacements [kN], of pressures [m3/s]. docs/theory/host.md section 5.1.
-   pure function rounding_of_unknowns(dofs, pattern, constraint, values, x) result(rounding)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: values(:)   !< Entries of the matrix, in the order of the pattern.
-      real(wp), intent(in) :: x(:, :)     !< (FIELDS, nodes) [m, kPa]
+   pure function rounding_of_unknowns(solution) result(rounding)
+      type(solution_t), intent(in) :: solution
       real(wp) :: rounding(FIELDS)
-      real(wp) :: row
-      integer :: i, place, j
+      real(wp) :: unknowns(solution%dofs%n), row
+      integer :: i, place
 
+      unknowns = [(solution%next%x(solution%dofs%field(i), solution%dofs%node(i)), i=1, solution%dofs%n)]
       rounding = 0.0_wp
-      do i = 1, dofs%n
-         if (constraint%fixed(i)) cycle
+      do i = 1, solution%dofs%n
+         if (solution%constraint%fixed(i)) cycle
          row = 0.0_wp
-         do place = pattern%row(i), pattern%row(i + 1) - 1
-            j = pattern%col(place)
-            row = row + abs(values(place)*x(dofs%field(j), dofs%node(j)))
+         do place = solution%pattern%row(i), solution%pattern%row(i + 1) - 1
+            row = row + abs(solution%assembly%values(place)*unknowns(solution%pattern%col(place)))
          end do
-         rounding(dofs%field(i)) = rounding(dofs%field(i)) + row**2
+         rounding(solution%dofs%field(i)) = rounding(solution%dofs%field(i)) + row**2
       end do
       rounding(:DISPLACEMENTS) = sum(rounding(:DISPLACEMENTS))
       rounding = ROUNDINGS*epsilon(1.0_wp)*sqrt(rounding)
    end function rounding_of_unknowns
 
    !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in rhs.
-   subroutine add_what_acts(dofs, pattern, scheme, constraint, old, new, slopes, touched, assembly, system, rhs, t0)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
+   subroutine add_what_acts(scheme, slopes, touched, solution, rhs, t0)
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
       real(wp), allocatable, intent(in) :: touched(:)   !< Forces of contacts before the step, if they are asked for.
-      type(assembly_t), intent(inout) :: assembly
-      type(system_t), intent(inout) :: system
+      type(solution_t), intent(inout) :: solution
       real(wp), intent(out) :: rhs(:)
       real(wp), intent(inout) :: t0
       real(wp), allocatable :: without(:)   !< The residual without contacts.
 
-      call add_forces(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-      allocate (without(merge(dofs%n, 0, allocated(touched))))
-      if (allocated(touched)) without(:) = assembly%residual
-      if (allocated(system%contacts)) then
-         call add_elapsed(system%seconds(T_REST), t0)
-         call system%contacts%add(pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, assembly%values)
-         call add_elapsed(system%seconds(T_CONTACT), t0)
-      end if
-      rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
-      call loads_of_water(dofs, constraint%air, rhs)
-      assembly%scale = assembly%scale + abs(rhs)
-      if (allocated(assembly%water)) assembly%water = assembly%water + abs(water_of(dofs, constraint%air, rhs))
-      if (assembly%with_change) then
-         ! What the step changes of loads and contacts, beside that of the elements. An overlap that no solution has
-         ! answered yet presses with the penalty alone, which balances nothing: no more counts than the force that is
-         ! there now.
-         if (allocated(touched)) assembly%change = assembly%change + &
-            min(abs(assembly%residual - without), abs(assembly%residual - without - touched))
-         where (dofs%field <= DISPLACEMENTS)
-            assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
-         elsewhere
-            assembly%change = assembly%scale
-         end where
-      end if
-      rhs = rhs - assembly%residual
-      system%reaction = -rhs
+      associate (assembly => solution%assembly, system => solution%system, constraint => solution%constraint)
+         call add_forces(scheme, slopes, solution)
+         allocate (without(merge(solution%dofs%n, 0, allocated(touched))))
+         if (allocated(touched)) without(:) = assembly%residual
+         if (allocated(system%contacts)) then
+            call add_elapsed(system%seconds(T_REST), t0)
+            call system%contacts%add(solution%pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
+                                     assembly%values)
+            call add_elapsed(system%seconds(T_CONTACT), t0)
+         end if
+         rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
+         call loads_of_water(solution%dofs, constraint%air, rhs)
+         assembly%scale = assembly%scale + abs(rhs)
+         if (allocated(assembly%water)) assembly%water = assembly%water &
+                                                         + abs(water_of(solution%dofs, constraint%air, rhs))
+         if (assembly%with_change) then
+            ! What the step changes of loads and contacts, beside that of the elements. An overlap that no solution has
+            ! answered yet presses with the penalty alone, which balances nothing: no more counts than the force that is
+            ! there now.
+            if (allocated(touched)) assembly%change = assembly%change + &
+               min(abs(assembly%residual - without), abs(assembly%residual - without - touched))
+            where (solution%dofs%field <= DISPLACEMENTS)
+               assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
+            elsewhere
+               assembly%change = assembly%scale
+            end where
+         end if
+         rhs = rhs - assembly%residual
+         system%reaction = -rhs
+      end associate
    end subroutine add_what_acts
 
    !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
    !> docs/theory/host.md section 4.1. Into `a` of both states, which are equal [m/s2]. Outcomes as of take_step, but
    !> for NOT_CONVERGED.
-   subroutine start_accelerations(domain, dofs, solution)
-      type(domain_t), intent(in) :: domain
-      type(dofs_t), intent(in) :: dofs
+   subroutine start_accelerations(solution)
       type(solution_t), intent(inout) :: solution
       type(constraint_t) :: held
       type(scheme_t) :: scheme
@@ -446,28 +425,28 @@ contains
          scheme = scheme_t(has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, &
                            c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
          held = constraint
-         held%fixed = constraint%fixed .or. dofs%field > DISPLACEMENTS
+         held%fixed = constraint%fixed .or. solution%dofs%field > DISPLACEMENTS
          held%target = 0.0_wp
          if (allocated(constraint%acceleration)) held%target = constraint%acceleration
          held%air = .false.
          assembly%air = .false.
          state%a = 0.0_wp
          work%a = 0.0_wp
-         allocate (rhs(dofs%n), dx(dofs%n))
-         if (.not. update_contacts(system, dofs, pattern, state%x, .false., assembly)) then
+         allocate (rhs(solution%dofs%n), dx(solution%dofs%n))
+         if (.not. update_contacts(system, solution%dofs, pattern, state%x, .false., assembly)) then
             log%outcome = CONTACT_FAILED
             return
          end if
-         call assemble(domain, dofs, pattern, scheme, state, work, .true., assembly)
+         call assemble(solution%domain, solution%dofs, pattern, scheme, state, work, .true., assembly)
          if (assembly%bad_element > 0) then
             log%outcome = MATERIAL_FAILED
             return
          end if
-         call add_forces(dofs, pattern, scheme, held, state, work, .true., assembly)
+         call add_forces(scheme, .true., solution)
          if (allocated(system%contacts)) call system%contacts%add(pattern, 0.0_wp, .false., assembly%residual, &
                                                                   assembly%scale, assembly%values)
          rhs = held%load_0 - held%offset - assembly%residual
-         call constrain(dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
+         call constrain(solution%dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
          if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
          system%analysed = .true.
          call factorise(system%sparse, assembly%values, status)
@@ -481,7 +460,7 @@ contains
          end if
          do i = 1, size(state%a, 2)
             do f = 1, 2
-               if (dofs%of(f, i) > 0) state%a(f, i) = dx(dofs%of(f, i))
+               if (solution%dofs%of(f, i) > 0) state%a(f, i) = dx(solution%dofs%of(f, i))
             end do
          end do
          work%a = state%a
@@ -490,12 +469,9 @@ contains
 
    !> Forces on the free displacements that the loads of a state at rest leave without balance: those that act at once.
    !> docs/theory/host.md section 4.4. False where the material or a contact refuses the state.
-   logical function unbalanced_forces(domain, dofs, solution, forces) result(good)
-      type(domain_t), intent(in) :: domain
-      type(dofs_t), intent(in) :: dofs
-      type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads.
+   logical function unbalanced_forces(solution, forces) result(good)
+      type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads, load_1 become them.
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
-      type(constraint_t) :: held
       type(scheme_t) :: scheme
       real(wp), allocatable :: touched(:)
       real(wp) :: t0
@@ -503,49 +479,46 @@ contains
       associate (state => solution%state, work => solution%next, pattern => solution%pattern, &
                  constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
          t0 = clock()
-         allocate (forces(dofs%n), source=0.0_wp)
+         allocate (forces(solution%dofs%n), source=0.0_wp)
          scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
-         held = constraint
-         held%load_1 = held%load_0
+         constraint%load_1 = constraint%load_0
          assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
-         call begin_passes(scheme, held, control_t(), assembly)
-         good = update_contacts(system, dofs, pattern, state%x, .false., assembly)
-         if (good) call assemble(domain, dofs, pattern, scheme, state, work, .false., assembly)
+         call begin_passes(scheme, control_t(), solution)
+         good = update_contacts(system, solution%dofs, pattern, state%x, .false., assembly)
+         if (good) call assemble(solution%domain, solution%dofs, pattern, scheme, state, work, .false., assembly)
          if (good) good = assembly%bad_element == 0
          if (.not. good) return
-         call add_what_acts(dofs, pattern, scheme, held, state, work, .false., touched, assembly, system, forces, t0)
-         where (constraint%fixed .or. dofs%field > DISPLACEMENTS) forces = 0.0_wp
+         call add_what_acts(scheme, .false., touched, solution, forces, t0)
+         where (constraint%fixed .or. solution%dofs%field > DISPLACEMENTS) forces = 0.0_wp
       end associate
    end function unbalanced_forces
 
    !> Inertia of rigid bodies, and the forces of terms.
-   subroutine add_forces(dofs, pattern, scheme, constraint, old, new, slopes, assembly)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
+   subroutine add_forces(scheme, slopes, solution)
       type(scheme_t), intent(in) :: scheme
-      type(constraint_t), intent(in) :: constraint
-      type(model_state_t), intent(in) :: old, new
       logical, intent(in) :: slopes
-      type(assembly_t), intent(inout) :: assembly
+      type(solution_t), intent(inout) :: solution
       integer :: i, f, k, place
       real(wp) :: force
 
-      do i = 1, dofs%n
-         if (.not. constraint%mass(i) > 0.0_wp) cycle
-         f = dofs%field(i)
-         k = dofs%node(i)
-         force = constraint%mass(i)*(old%a(f, k) + scheme%l_a*(new%a(f, k) - old%a(f, k)))
-         assembly%residual(i) = assembly%residual(i) + force
-         assembly%scale(i) = assembly%scale(i) + abs(force)
-         place = place_of(pattern, i, i)
-         if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
-      end do
-      do i = 1, size(constraint%added)
-         associate (one => constraint%added(i)%it)
-            if (one%acts) call one%add(dofs, pattern, scheme, old, new, slopes, assembly)
-         end associate
-      end do
-      call add_linear_forces(constraint%linear, dofs, pattern, scheme, old, new, slopes, assembly)
+      associate (pattern => solution%pattern, assembly => solution%assembly, constraint => solution%constraint, &
+                 old => solution%state, new => solution%next)
+         do i = 1, solution%dofs%n
+            if (.not. constraint%mass(i) > 0.0_wp) cycle
+            f = solution%dofs%field(i)
+            k = solution%dofs%node(i)
+            force = constraint%mass(i)*(old%a(f, k) + scheme%l_a*(new%a(f, k) - old%a(f, k)))
+            assembly%residual(i) = assembly%residual(i) + force
+            assembly%scale(i) = assembly%scale(i) + abs(force)
+            place = place_of(pattern, i, i)
+            if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
+         end do
+         do i = 1, size(constraint%springs)
+            if (constraint%springs(i)%acts) &
+               call add_spring(constraint%springs(i), solution%dofs, pattern, scheme, old, new, slopes, assembly)
+         end do
+         call add_linear_forces(constraint%linear, solution%dofs, pattern, scheme, old, new, slopes, assembly)
+      end associate
    end subroutine add_forces
 
    pure subroutine add_correction(dofs, dx, x, share, largest)

@@ -2,10 +2,10 @@
 !> Values that a step prescribes, and the rows of the equations that say so. docs/theory/host.md section 7.1.
 module prescribed_values
    use kinds, only: wp
-   use added_forces, only: added_box_t
    use degrees_of_freedom, only: dofs_t
    use linear_forces, only: linear_forces_t
    use sparsity_pattern, only: pattern_t, place_of
+   use springs, only: spring_t
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -27,7 +27,7 @@ module prescribed_values
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
       type(linear_forces_t), allocatable :: linear(:)   !< Dashpots and springs of terms.
-      type(added_box_t), allocatable :: added(:)        !< Forces of terms with laws of their own.
+      type(spring_t), allocatable :: springs(:)         !< Springs of terms whose ends may part.
       real(wp), allocatable :: acceleration(:)   !< Prescribed ones where a stage begins, if there are any.
       real(wp), allocatable :: mass(:)        !< Masses of rigid bodies [Mg].
       integer, allocatable :: body(:)         !< Number of the rigid body of an unknown; 0: none.

@@ -1,13 +1,14 @@
 ! SPDX-License-Identifier: MIT
-!> Solution on which a step is taken: the matrix, what is prescribed, the states before and after, the place in the
-!> stages, and how the step is taken.
+!> Solution on which a step is taken: the domain and its unknowns, the matrix, what is prescribed, the states before
+!> and after, the place in the stages, and how the step is taken.
 module solution
    use kinds, only: wp
    use convergence, only: control_t, log_t
+   use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use generalised_alpha, only: scheme_t
    use linear_system, only: system_t
-   use porous_domain, only: model_state_t
+   use porous_domain, only: domain_t, model_state_t
    use prescribed_values, only: constraint_t
    use sparsity_pattern, only: pattern_t
    implicit none (type, external)
@@ -28,6 +29,8 @@ module solution
    end type stage_state_t
 
    type :: solution_t
+      type(domain_t), pointer :: domain => null()   !< Domain of the model; steps change the tolerance of its laws.
+      type(dofs_t), pointer :: dofs => null()       !< Unknowns of the model.
       type(pattern_t) :: pattern               !< Pattern of the matrix; it grows with the contacts.
       type(assembly_t) :: assembly
       type(system_t) :: system

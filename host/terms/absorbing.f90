@@ -16,11 +16,11 @@ module absorbing
    use key_table, only: key_table_t
    use kinds, only: wp
    use linear_forces, only: linear_forces_t
-   use material_point, only: material_t, material_slot_t, response_t, batch_report_t
+   use material_point, only: material_t, response_t, batch_report_t
    use model_types, only: model_t, problem_t, action_t, factor_at
    use name_search, only: mesh_group, history_named
    use permeability_laws, only: relative_t, relative_permeability
-   use porous_domain, only: model_state_t, copy_state, mixture_density, pressures_at, COUPLED, UNDRAINED
+   use porous_domain, only: domain_t, copy_state, mixture_density, pressures_at, law_of, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
@@ -111,11 +111,11 @@ contains
             side%dashpots = size(problem%constraint%linear)
             side%edges = facing_edges(problem%model, side%group, acting_stages(problem%model, side%action_t))
             allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
-            allocate (side%held(problem%model%dofs%n), source=.false.)
-            allocate (side%incoming(problem%model%dofs%n), source=0.0_wp)
+            allocate (side%held(problem%dofs%n), source=.false.)
+            allocate (side%incoming(problem%dofs%n), source=0.0_wp)
             do e = 1, size(side%edges, 2)
                do f = 1, DISPLACEMENTS
-                  associate (unknowns => problem%model%dofs%of(f, side%edges(:, e)))
+                  associate (unknowns => problem%dofs%of(f, side%edges(:, e)))
                      side%held(pack(unknowns, unknowns > 0)) = .true.
                   end associate
                end do
@@ -145,86 +145,37 @@ contains
       end do
    end subroutine make_dashpots
 
-   !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points.
-   subroutine ground_behind(model, laws, side, edge, state, ground, fault)
-      type(model_t), intent(in) :: model
-      type(material_slot_t), allocatable, intent(in) :: laws(:)   !< As in a state.
+   !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points. Fault
+   !> EXIT_MATERIAL: the ground has no stiffness, or its material refuses its own state.
+   subroutine ground_behind(problem, side, edge, ground, fault)
+      type(problem_t), intent(in), target :: problem
       type(side_t), intent(in) :: side
       integer, intent(in) :: edge(3)
-      type(model_state_t), intent(in) :: state
       real(wp), intent(out) :: ground(4)
       type(fault_t), intent(inout) :: fault
-      real(wp) :: rho, c_p, c_s, modulus, shear, s, slope
+      class(material_t), pointer :: law
+      type(response_t) :: response
+      type(batch_report_t) :: report
       type(relative_t) :: rel
-      logical :: with_pores, with_flow
-      integer :: e, i
+      real(wp), dimension(problem%domain%rule) :: suction, s, n
+      real(wp) :: strain(6, problem%domain%rule), p(2), rho, c_p, c_s, modulus, shear, slope
+      real(wp), allocatable :: before(:, :), after(:, :)
+      integer :: e, g, i, first, last
 
       ground = 0.0_wp
       ! The triangle on its left: of two that share it the other may be no ground.
-      e = findloc([(any(model%domain%mesh%t6(4:6, i) == edge(3) .and. model%domain%mesh%t6(1:3, i) == edge(1)), &
-                    i=1, size(model%domain%mesh%t6, 2))], .true., dim=1)
-      associate (region => model%domain%region_of(e))
-         if (allocated(laws)) then
-            call look_at_element(model, laws(region)%law, e, state, modulus, shear, s, slope, rho, fault)
-         else
-            call look_at_element(model, model%domain%regions(region)%law, e, state, modulus, shear, s, slope, rho, &
-                                 fault)
-         end if
+      associate (t6 => problem%domain%mesh%t6)
+         e = findloc([(any(t6(4:6, i) == edge(3) .and. t6(1:3, i) == edge(1)), i=1, size(t6, 2))], .true., dim=1)
       end associate
-      if (fault%code /= 0) return
-      if (side%rho > 0.0_wp) rho = side%rho
-      associate (region => model%domain%regions(model%domain%region_of(e)))
-         with_pores = region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)
-         with_flow = region%with_w .and. region%drainage == COUPLED
-      end associate
-      if (with_pores) modulus = modulus + pore_stiffness(model, e, state, s, slope)
-      c_p = side%c_p
-      c_s = side%c_s
-      if ((.not. c_p > 0.0_wp .and. .not. modulus > 0.0_wp) .or. (.not. c_s > 0.0_wp .and. .not. shear > 0.0_wp)) then
-         call raise(fault, EXIT_MATERIAL, place_of(side)//'element '//whole(e)//' at the boundary has no '// &
-                    'stiffness where it begins to act (shear modulus '//short(shear)//' kPa); give c_p and c_s.')
-         return
-      end if
-      if (.not. c_p > 0.0_wp) c_p = sqrt(modulus/rho)
-      if (.not. c_s > 0.0_wp) c_s = sqrt(shear/rho)
-      ground(AT_NORMAL) = rho*c_p
-      ground(AT_SHEAR) = rho*c_s
-      if (.not. with_flow) return
-      associate (law => model%domain%permeabilities(model%domain%regions(model%domain%region_of(e))%permeability), &
-                 f => model%domain%fluids)
-         rel = relative_permeability(law, s)
-         ground(AT_WATER) = law%intrinsic*rel%w/(f%eta_w*c_p)
-         if (model%domain%with_c) ground(AT_AIR) = law%intrinsic*rel%a/(f%eta_a*c_p)
-      end associate
-   end subroutine ground_behind
-
-   !> Means over the points of an element: constrained and shear modulus of the skeleton for a small strain [kPa],
-   !> saturation and its slope against suction, density.
-   subroutine look_at_element(model, law, e, state, modulus, shear, s, slope, rho, fault)
-      type(model_t), intent(in) :: model
-      class(material_t), intent(in) :: law
-      integer, intent(in) :: e
-      type(model_state_t), intent(in) :: state
-      real(wp), intent(out) :: modulus, shear, s, slope, rho
-      type(fault_t), intent(inout) :: fault
-      type(response_t) :: response
-      type(batch_report_t) :: report
-      real(wp) :: strain(6, model%domain%rule), suction(model%domain%rule), pressures(2), n
-      real(wp), allocatable :: before(:, :), after(:, :)
-      integer :: g, p, first, last
-
-      associate (m => model%domain, region => model%domain%regions(model%domain%region_of(e)))
+      associate (m => problem%domain, state => problem%state, region => &
+                 problem%domain%regions(problem%domain%region_of(e)))
          first = (e - 1)*m%rule + 1
          last = e*m%rule
-         modulus = 0.0_wp
-         shear = 0.0_wp
-         s = 0.0_wp
-         slope = 0.0_wp
-         rho = 0.0_wp
+         law => law_of(m, problem%next, m%region_of(e))
          strain = 0.0_wp
          do g = 1, m%rule
-            pressures = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
-            suction(g) = pressures(2)
+            p = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
+            suction(g) = p(2)
          end do
          before = reshape(state%state(m%before_state(e) + 1:m%before_state(e + 1)), [law%n_state, m%rule])
          after = before
@@ -235,37 +186,54 @@ contains
                        'refuses its own state.')
             return
          end if
+         s = state%s(first:last)
+         n = state%e(first:last)/(1 + state%e(first:last))
+         rho = sum([(mixture_density(m, region, n(g), s(g))/m%rule, g=1, m%rule)])
+         if (side%rho > 0.0_wp) rho = side%rho
          modulus = sum(response%dsig_deps(1, 1, :m%rule) + response%dsig_deps(2, 2, :m%rule))/(2*m%rule)
          shear = sum(response%dsig_deps(4, 4, :m%rule))/m%rule
-         s = sum(state%s(first:last))/m%rule
+         slope = 0.0_wp
          if (region%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
-         do p = first, last
-            n = state%e(p)/(1 + state%e(p))
-            rho = rho + mixture_density(m, region, n, state%s(p))/m%rule
-         end do
+         if (region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)) modulus = modulus &
+            + pore_stiffness(m, n(1), sum(s)/m%rule, slope)
+         c_p = side%c_p
+         c_s = side%c_s
+         if (.not. (max(c_p, modulus) > 0.0_wp .and. max(c_s, shear) > 0.0_wp)) then
+            call raise(fault, EXIT_MATERIAL, place_of(side)//'element '//whole(e)//' at the boundary has no '// &
+                       'stiffness where it begins to act (shear modulus '//short(shear)//' kPa); give c_p and c_s.')
+            return
+         end if
+         if (.not. c_p > 0.0_wp) c_p = sqrt(modulus/rho)
+         if (.not. c_s > 0.0_wp) c_s = sqrt(shear/rho)
+         ground(AT_NORMAL) = rho*c_p
+         ground(AT_SHEAR) = rho*c_s
+         if (.not. region%with_w .or. region%drainage /= COUPLED) return
+         associate (permeability => m%permeabilities(region%permeability))
+            rel = relative_permeability(permeability, sum(s)/m%rule)
+            ground(AT_WATER) = permeability%intrinsic*rel%w/(m%fluids%eta_w*c_p)
+            if (m%with_c) ground(AT_AIR) = permeability%intrinsic*rel%a/(m%fluids%eta_a*c_p)
+         end associate
       end associate
-   end subroutine look_at_element
+   end subroutine ground_behind
 
    !> What fluids that cannot leave add to the constrained modulus [kPa].
-   real(wp) function pore_stiffness(model, e, state, s, slope) result(stiffness)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: e
-      type(model_state_t), intent(in) :: state
-      real(wp), intent(in) :: s, slope   !< Saturation, its change with suction [1/kPa].
-      real(wp) :: n, c(2, 2), room, det
+   pure real(wp) function pore_stiffness(domain, n, s, slope) result(stiffness)
+      type(domain_t), intent(in) :: domain
+      real(wp), intent(in) :: n, s, slope   !< Porosity, saturation, its change with suction [1/kPa].
+      real(wp) :: c(2, 2), room, det
 
-      associate (m => model%domain, p => (e - 1)*model%domain%rule + 1, h => model%domain%fluids%henry)
-         n = state%e(p)/(1 + state%e(p))
+      associate (fluids => domain%fluids, h => domain%fluids%henry)
          room = 0.0_wp
-         if (m%with_c) room = 1 - (1 - h)*s
+         if (domain%with_c) room = 1 - (1 - h)*s
          ! Sum of the balances, and air, against p_w and p_c: docs/theory/host.md sections 2.2 and 2.3.
-         c(2, 1) = n*room/m%fluids%k_a
-         c(1, 1) = n*s/m%fluids%k_w + c(2, 1)
+         c(2, 1) = n*room/fluids%k_a
+         c(1, 1) = n*s/fluids%k_w + c(2, 1)
+         stiffness = 1/c(1, 1)
+         if (.not. domain%with_c) return
          c(1, 2) = c(2, 1) + h*n*slope
          c(2, 2) = c(2, 1) - (1 - h)*n*slope
-         stiffness = 1/c(1, 1)
          det = c(1, 1)*c(2, 2) - c(1, 2)*c(2, 1)
-         if (m%with_c .and. c(2, 2) > 0.0_wp .and. det > 0.0_wp) &
+         if (c(2, 2) > 0.0_wp .and. det > 0.0_wp) &
             stiffness = ((c(2, 2) - (1 - s)*c(2, 1))*(1 + h*s) + ((1 - s)*c(1, 1) - c(1, 2))*room)/det
       end associate
    end function pore_stiffness
@@ -342,7 +310,7 @@ contains
       end do
       self%at_start = begins
       if (.not. begins) return
-      allocate (keeps(problem%model%dofs%n), source=.false.)
+      allocate (keeps(problem%dofs%n), source=.false.)
       do i = 1, size(self%sides)
          if (acts(self%sides(i), problem%model, problem%at%stage)) keeps = keeps .or. self%sides(i)%held
       end do
@@ -406,8 +374,7 @@ contains
             if (.not. begin_to_act(i)) cycle
             associate (side => self%sides(i))
                do e = 1, size(side%edges, 2)
-                  call ground_behind(problem%model, problem%next%laws, side, side%edges(:, e), problem%state, &
-                                     side%behind(:, e), fault)
+                  call ground_behind(problem, side, side%edges(:, e), side%behind(:, e), fault)
                   if (fault%code /= 0) return
                end do
                call make_dashpots(problem%model, side, problem%constraint%linear(side%dashpots))
@@ -417,7 +384,7 @@ contains
          problem%next%v = 0.0_wp
          problem%next%a = 0.0_wp
          problem%assembly%air = .false.
-         call assemble(problem%model%domain, problem%model%dofs, problem%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), &
+         call assemble(problem%domain, problem%dofs, problem%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), &
                        problem%state, problem%next, .false., problem%assembly)
          if (problem%assembly%bad_element > 0) then
             call raise(fault, EXIT_MATERIAL, 'Stage '//trim(problem%stage%name)//': the material of element '// &

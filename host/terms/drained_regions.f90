@@ -59,14 +59,14 @@ contains
       type(problem_t), intent(inout) :: problem
       integer :: e, i, k, at
 
-      associate (domain => problem%model%domain, c => problem%constraint)
+      associate (domain => problem%domain, c => problem%constraint)
          do e = 1, size(domain%region_of)
             if (domain%regions(domain%region_of(e))%drainage /= DRAINED) cycle
             if (.not. is_present(problem%state, e)) cycle
             do k = 1, domain%n_p
                associate (node => domain%mesh%t6(k, e))
                   do i = AT_P_W, AT_P_C
-                     at = problem%model%dofs%of(i, node)
+                     at = problem%dofs%of(i, node)
                      if (at == 0) cycle
                      if (c%fixed(at)) cycle
                      c%fixed(at) = .true.
@@ -78,7 +78,7 @@ contains
          if (domain%fluids%henry > 0.0_wp) return
          do e = 1, size(domain%center)
             if (domain%center(e) == 0) cycle
-            at = problem%model%dofs%of(AT_P_C, domain%center(e))
+            at = problem%dofs%of(AT_P_C, domain%center(e))
             if (at == 0) cycle
             if (any(problem%state%s((e - 1)*domain%rule + 1:e*domain%rule) < 1.0_wp)) cycle
             c%fixed(at) = .true.
@@ -91,7 +91,7 @@ contains
       class(drained_regions_t), intent(in) :: self
       type(problem_t), intent(inout) :: problem
 
-      call follow_undrained(problem%model%domain, problem%model%dofs%of, problem%next%x)
+      call follow_undrained(problem%domain, problem%dofs%of, problem%next%x)
    end subroutine complete
 
    !> Pressures of nodes that lie in undrained elements alone, for histories and fields: the mean of what these have

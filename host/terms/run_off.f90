@@ -110,7 +110,7 @@ contains
    pure function rain_at(problem, time) result(rain)
       type(problem_t), intent(in) :: problem
       real(wp), intent(in) :: time   !< [s]
-      real(wp) :: rain(problem%model%dofs%n)
+      real(wp) :: rain(problem%dofs%n)
       integer :: i
 
       rain = 0.0_wp
@@ -132,7 +132,7 @@ contains
       integer :: i, k
 
       if (.not. has_rates(problem%stage%kind)) return
-      associate (model => problem%model, groups => problem%model%domain%mesh%groups, stage => problem%stage)
+      associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%stage)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i), nodes => groups(model%fixes(i)%group)%nodes)
                if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
@@ -157,7 +157,7 @@ contains
          integer, intent(in) :: node, group
          real(wp), intent(in) :: value   !< [kPa]
 
-         associate (dofs => problem%model%dofs, c => problem%constraint)
+         associate (dofs => problem%dofs, c => problem%constraint)
             associate (at => dofs%of(AT_P_W, node))
                if (at == 0) return
                if (c%fixed(at)) return

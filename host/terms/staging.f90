@@ -109,12 +109,12 @@ contains
          state%joins = state%present .and. .not. before
          call find_held_up(self, state%present .or. .not. before, problem, fault)
          if (fault%code /= 0) return
-         call mark_absent(problem%model%dofs, state%present, self%absent)
-         do i = 1, merge(problem%model%dofs%n, 0, begins)
+         call mark_absent(problem%dofs, state%present, self%absent)
+         do i = 1, merge(problem%dofs%n, 0, begins)
             if (.not. self%absent(i)) cycle
-            f = problem%model%dofs%field(i)
-            state%v(f, problem%model%dofs%node(i)) = 0.0_wp
-            if (f <= DISPLACEMENTS) state%a(f, problem%model%dofs%node(i)) = 0.0_wp
+            f = problem%dofs%field(i)
+            state%v(f, problem%dofs%node(i)) = 0.0_wp
+            if (f <= DISPLACEMENTS) state%a(f, problem%dofs%node(i)) = 0.0_wp
          end do
          state%growth = share_over(problem, state%time)
          call copy_state(state, problem%next)
@@ -136,7 +136,7 @@ contains
       type(scheme_t) :: scheme
       integer :: e, i, at
 
-      self%held_up = [(0.0_wp, i=1, problem%model%dofs%n)]
+      self%held_up = [(0.0_wp, i=1, problem%dofs%n)]
       if (all(stays)) return
       at_start = problem%state
       at_start%x = problem%at%x_start
@@ -152,17 +152,17 @@ contains
          if (stays(e)) cycle
          block%first = e
          block%last = e
-         call update_block(problem%model%domain, scheme, at_start, same, .false., slopes, block, points)
+         call update_block(problem%domain, scheme, at_start, same, .false., slopes, block, points)
          if (block%report%code /= 0) then
             call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//', which leaves, refuses its '// &
                        'own state at rest.')
             return
          end if
-         call add_element(problem%model%domain, e, scheme, block, points, at_start, same, .false., out)
-         do i = 1, element_size(problem%model%domain, e)
-            at = problem%model%dofs%element(i, e)
+         call add_element(problem%domain, e, scheme, block, points, at_start, same, .false., out)
+         do i = 1, element_size(problem%domain, e)
+            at = problem%dofs%element(i, e)
             if (at == 0) cycle
-            if (problem%model%dofs%field(at) <= DISPLACEMENTS) self%held_up(at) = self%held_up(at) + out%r(i)
+            if (problem%dofs%field(at) <= DISPLACEMENTS) self%held_up(at) = self%held_up(at) + out%r(i)
          end do
       end do
    end subroutine find_held_up
@@ -206,7 +206,7 @@ contains
       type(problem_t), intent(inout) :: problem
       integer :: i
 
-      associate (c => problem%constraint, dofs => problem%model%dofs)
+      associate (c => problem%constraint, dofs => problem%dofs)
          do i = 1, dofs%n
             if (.not. self%absent(i)) cycle
             c%fixed(i) = .true.

@@ -329,8 +329,8 @@ REGIONS = [
       "point%m = [1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp]"),
      ("element/porous_balance.f90", "kappa = domain%permeabilities(region%permeability)%intrinsic/domain%fluids%eta_w",
       "kappa = domain%permeabilities(max(1, region%permeability))%intrinsic/domain%fluids%eta_w"),
-     ("element/porous_balance.f90", "      if (region%drainage /= COUPLED) return\n", ""),
-     ("element/porous_balance.f90", "      if (region%drainage == COUPLED) &\n         mix%rel", "      mix%rel"),
+     ("element/porous_balance.f90", "         if (region%drainage /= COUPLED) return\n", ""),
+     ("element/porous_balance.f90", "      if (region%drainage == COUPLED) rel", "      rel"),
      ("element/porous_balance.f90", "relative_permeability(domain%permeabilities(region%permeability)",
       "relative_permeability(domain%permeabilities(max(1, region%permeability))")),
     ("an undrained element begins with one pressure", (PLACES, "- domain%given(:, domain%center(element))",
@@ -346,7 +346,7 @@ REGIONS = [
     ("dry soil has the water of the scene",
      (BUILDER, "region%with_w = domain%with_w .and. region%drainage /= DRY", "region%with_w = domain%with_w")),
     ("dry soil has the weight of wet soil",
-     ("element/porous_balance.f90", "rho = region%rho_s - n*region%rho_s", "rho = region%rho_s - n*(region%rho_s - domain%fluids%rho_w)")),
+     ("element/porous_balance.f90", "rho_n = -region%rho_s\n", "rho_n = domain%fluids%rho_w - region%rho_s\n")),
     ("dry soil has the density of wet soil in balances and impedances",
      (PLACES, "if (.not. region%with_w) return\n      mixture", "if (.not. domain%with_w) return\n      mixture")),
     ("geostatic stress of dry soil as under water", (START, "if (region%with_w) weight = weight", "if (m%with_w) weight = weight")),
@@ -362,8 +362,8 @@ REGIONS = [
     ("water that flows in nowhere is accepted", (GIVEN, "if (any(edges_with_flow(domain, load%group))) cycle", "if (any(flows)) cycle")),
     ("nodes of undrained soil show the start", (DRAINED, "x(AT_P_W:AT_P_C, k) = total(:, k)/users(k)", "x(AT_P_W:AT_P_C, k) = domain%given(:, k)")),
     ("a boundary of drained soil absorbs waves of undrained soil",
-     (ABSORBING, "with_pores = region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)",
-      "with_pores = region%with_w")),
+     (ABSORBING, "if (region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)) modulus",
+      "if (region%with_w) modulus")),
 ]
 
 # What the field does to a boundary: (title, (file below host, text that stands there once, its replacement), ...).
