@@ -53,26 +53,21 @@ contains
       integer, allocatable, intent(out) :: edges_of(:, :)
       type(contact_status_t), intent(out) :: status
       integer :: e, i, node
+      logical :: good
 
       allocate (edges_of(2, max(nodes, 0)), source=0)
       do e = 1, size(edges, 2)
          do i = 1, 3
             node = edges(i, e)
-            if (node < 1 .or. node > nodes) then
-               status = contact_status_t(CONTACT_BAD_EDGE, e, master, real(node, wp))
-               return
-            end if
             ! A middle node fills both places, so that nobody else may have it.
-            if (edges_of(2, node) /= 0 .or. (i == 3 .and. edges_of(1, node) /= 0)) then
+            good = node >= 1 .and. node <= nodes
+            if (good) good = edges_of(2, node) == 0 .and. (i < 3 .or. edges_of(1, node) == 0)
+            if (.not. good) then
                status = contact_status_t(CONTACT_BAD_EDGE, e, master, real(node, wp))
                return
             end if
-            if (edges_of(1, node) == 0) then
-               edges_of(1, node) = e
-               if (i == 3) edges_of(2, node) = e
-            else
-               edges_of(2, node) = e
-            end if
+            if (i == 3 .or. edges_of(1, node) > 0) edges_of(2, node) = e
+            if (edges_of(1, node) == 0) edges_of(1, node) = e
          end do
       end do
       do e = 1, size(edges, 2)

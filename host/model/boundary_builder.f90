@@ -164,9 +164,9 @@ contains
                     'S_w between the main curves, with hysteresis [-]; default: on the main drying curve', ':p_c')
       call k%number('datum', initial%datum, -BIG, BIG, 'z of the datum [m]', &
                     '+p_w_slope|p_c_slope|wave')
-      call k%number('v_z', initial%v_z, -BIG, BIG, 'vertical velocity at the start [m/s]')
+      call k%number('v_z', initial%v_z, -BIG, BIG, 'vertical velocity at the start [m/s]', ':moving')
       call k%number('wave', initial%wave, -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]', &
-                    '+wave_number')
+                    '+wave_number :moving')
       call k%number('wave_number', initial%wave_number, ZERO, BIG, 'see wave [1/m]', '+wave')
       stress = 1
       call k%word('stress', stress, 'none|uniform|geostatic', 'effective stress at the start')
