@@ -5,12 +5,11 @@
 module contact_penalty
    use contact_friction, only: friction_t, traction_t, pair_slips, drag_response, traction_at, &
                                tangential_stiffness, touching_share
-   use contact_geometry, only: contact_geometry_t, check_coordinates
+   use contact_geometry, only: contact_geometry_t, check_coordinates, edge_boxes, boxes_around, boxes_meet
    use contact_mortar, only: overlap_t, point_t, find_overlap, pair_points, pair_gaps, penetration, hats, POINTS, &
                              POSITION, SHARE, LARGEST_POINTS
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, nodal_forces_t, pair_response, new_forces, make_room, add_column
-   use contact_search, only: search_t, find_candidates
    use contact_types, only: TWO_PI, COMBINED_GAP, contact_options_t, contact_status_t, &
                             CONTACT_OK, CONTACT_NO_PROJECTION
    use kinds, only: wp
@@ -152,20 +151,21 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
-      type(search_t) :: search
+      real(wp) :: slaves(4, size(geometry%slave_edges, 2)), masters(4, size(geometry%master_edges, 2))
       real(wp) :: weight(3), weighted_gap(3), missed
-      integer :: e, c, n
+      integer :: e, master, n
 
-      call find_candidates(search, slave_x, geometry%slave_edges, master_x, geometry%master_edges, &
-                           geometry%options%search_radius)
+      call boxes_around(slave_x, geometry%slave_edges, geometry%options%search_radius, slaves)
+      call edge_boxes(master_x, geometry%master_edges, masters)
       result%weight = 0.0_wp
       result%gap = 0.0_wp
       n = 0
       do e = 1, size(geometry%slave_edges, 2)
          work%first_pair(e) = n + 1
-         do c = search%first(e), search%first(e + 1) - 1
+         do master = 1, size(masters, 2)
+            if (.not. boxes_meet(slaves(:, e), masters(:, master))) cycle
             if (n == size(work%pair)) call grow_pairs(work%pair)
-            associate (pair => work%pair(n + 1), master => search%candidate(c))
+            associate (pair => work%pair(n + 1))
                pair%x = of_edges(geometry, e, master, slave_x, master_x)
                call find_overlap(pair%x, geometry%free(geometry%master_edges(1:2, master)), pair%overlap)
                if (pair%overlap%segments == 0) cycle

@@ -25,7 +25,6 @@ module initial_conditions
       type(initial_t), allocatable :: initials(:)   !< Those of the scene, after them one that gives nothing.
       integer, allocatable :: of(:)                 !< Place of that of every element in them.
       logical, allocatable :: present(:)            !< (elements) In the first stage.
-      logical :: alike = .true.                     !< One region, one &initial: what lies above a point is as it is.
       type(strips_t) :: strips
    end type ground_t
 contains
@@ -36,14 +35,14 @@ contains
       type(model_t), intent(in) :: model
       type(model_state_t), intent(out) :: state
       type(fault_t), intent(inout) :: fault
-      type(tension_t), intent(out), optional :: tension
+      type(tension_t), intent(out) :: tension
       type(ground_t) :: ground
       type(saturation_t) :: sat
       character(600) :: text
       real(wp) :: p_c, pressures(2)
       integer :: e, g, p, i, n
 
-      if (present(tension)) allocate (tension%uses(size(model%domain%regions)))
+      allocate (tension%uses(size(model%domain%regions)))
       state = new_state_of(model%domain)
       state%gravity = gravity_at(model, state%time)
       if (allocated(model%ground)) then
@@ -83,7 +82,7 @@ contains
                      if (one%saturation > 0.0_wp) state%s(p) = one%saturation
                   end if
                   call set_stress(model, ground, e, gp%x, state%s(p), state%stress(:, p))
-                  if (present(tension)) call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
+                  call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
                end associate
                associate (own => state%state(model%domain%before_state(e) + (g - 1)*region%law%n_state + 1: &
                                              model%domain%before_state(e) + g*region%law%n_state))
@@ -94,7 +93,7 @@ contains
                   if (text == '') then
                      state%e(p) = region%law%void_ratio(own)
                      if (region%with_c) state%s(p) = region%law%saturation(own)
-                     if (present(tension)) call note_use(region%law, state%e(p), -sum(state%stress(1:3, p))/3, &
+                     call note_use(region%law, state%e(p), -sum(state%stress(1:3, p))/3, &
                                                          tension%uses(model%domain%region_of(e)))
                      cycle
                   end if
@@ -160,23 +159,18 @@ contains
       type(model_t), intent(in) :: model
       logical, intent(in) :: present(:)   !< (elements) In the first stage.
       type(ground_t) :: ground
-      integer :: i, k
+      integer :: i
 
       allocate (ground%initials(size(model%initials) + 1))
       ground%initials(:size(model%initials)) = model%initials
       allocate (ground%of(size(present)), source=size(ground%initials))
       do i = 1, size(model%initials)
          associate (elements => model%domain%mesh%groups(model%initials(i)%group)%elements)
-            do k = 1, size(elements)
-               ground%of(elements(k)) = i
-            end do
+            ground%of(elements) = i
          end associate
-         ground%alike = ground%alike .and. .not. model%initials(i)%follows
       end do
-      ground%alike = ground%alike .and. all(present) .and. size(model%domain%regions) == 1 .and. &
-                     all(ground%of == ground%of(1))
       ground%present = present
-      if (.not. ground%alike) ground%strips = new_strips(model%domain%mesh)
+      ground%strips = new_strips(model%domain%mesh)
    end function ground_at_start
 
    !> Effective stress, tension positive.
@@ -216,10 +210,7 @@ contains
       integer :: i, last
 
       associate (initial => ground%initials(ground%of(element)))
-         if (ground%alike) then
-            ends = [x(2), initial%surface]
-            of = [element]
-         else if (initial%follows) then
+         if (initial%follows) then
             call pieces_above(model%domain%mesh, ground%strips, x, ends=ends, element=of)
          else
             call pieces_above(model%domain%mesh, ground%strips, x, initial%surface, ends, of)

@@ -46,8 +46,9 @@ def warnings(text, *words):
 DOUBTS = [
     ("tension in MUD", "p_w_slope = -9.81", "p_w = 30", ["tensile at", "points of MUD"]),
     ("surface below the mesh", "surface = 0", "surface = -1", ["surface = -1 m lies below", "'all' at 0 m"]),
-    ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8", ["intrinsic = 1.1e-8 m2", "conductivity"]),
-    ("stiffness", "young = 1e6", "young = 1.1e9", ["young = 1.1e9 kPa"]),
+    ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8",
+     ["intrinsic = 1.1e-8 of &permeability", "conductivity"]),
+    ("stiffness", "young = 1e6", "young = 1.1e9", ["young = 1.1e9 of &elastic", "a modulus in kPa"]),
     ("material with a stress in another unit", "toyoura.nml'", "toyoura.nml' P_a = 5000",
      ["scene.nml:3: ", "P_a", "usual"]),
     ("material in another unit than the scene", "toyoura.nml'", "toyoura.nml' p_atm = 101325",

@@ -268,7 +268,7 @@ MUTATIONS = [
 
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
 SPRINGS = "contact/plate_springs.f90"
-SEARCH, PLATE, JOINED = "contact/contact_search.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
+SEARCH, PLATE, JOINED = "contact/contact_geometry.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
 DRAINAGE, PLANE = "terms/contact_drainage.f90", "terms/plane_plates.f90"
 
 # Of the host's contact, below host.
