@@ -204,6 +204,7 @@ contains
       type(contact_status_t), intent(out) :: status
       type(response_t) :: response
       real(wp) :: at_points, at_nodes, energy
+      real(wp) :: depth   !< Penetration that no pressure answers, over its edge [-].
       logical :: pressed
       integer :: i
 
@@ -228,8 +229,11 @@ contains
                call press_points(geometry, at_points, pair, with_tangent, work%load, result, status)
             if (status%code /= CONTACT_OK) return
             ! Combined gaps press wherever they look, and they look at the ends.
-            if (.not. (pressed .or. result%energy > energy .or. geometry%options%gap == COMBINED_GAP)) &
-               call note_unpressed(penetration(pair%x, pair%overlap), pair%x, result)
+            if (pressed .or. result%energy > energy .or. geometry%options%gap == COMBINED_GAP) cycle
+            depth = penetration(pair%x, pair%overlap)/norm2(pair%x(:, 2) - pair%x(:, 1))
+            if (depth <= result%unpressed) cycle
+            result%unpressed = depth
+            result%unpressed_at = pair%x(:, 3)
          end associate
       end do
       if (with_tangent) then
@@ -351,19 +355,6 @@ contains
          call add_column(result, unknown, unknown(j), response%stiffness(:, j))
       end do
    end subroutine add_response
-
-   !> A penetration that no pressure answers.
-   pure subroutine note_unpressed(depth, x, result)
-      real(wp), intent(in) :: depth      !< [m]
-      real(wp), intent(in) :: x(2, 6)
-      type(contact_result_t), intent(inout) :: result
-      real(wp) :: share
-
-      share = depth/norm2(x(:, 2) - x(:, 1))
-      if (share <= result%unpressed) return
-      result%unpressed = share
-      result%unpressed_at = x(:, 3)
-   end subroutine note_unpressed
 
    !> Adds the change of a nodal pressure to the tangent, dp_A = by_gap dg_A times what a unit of p_A pushes; with
    !> by_slip that of a nodal traction, dt_A = by_gap dg_A + by_slip ds_A times what a unit of t_A drags. Over all

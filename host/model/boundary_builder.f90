@@ -35,7 +35,7 @@ contains
       character(LENGTH) :: joined_name, history
       real(wp), allocatable :: r(:), outline(:)
       real(wp) :: z
-      logical :: up
+      logical :: up, good
       integer :: none(3, 0)
 
       joined_name = ''
@@ -64,14 +64,13 @@ contains
                     'plane also outline), or it is joined to a boundary, group = name: give one of the two.')
       else if (k%given('outline') .and. (size(outline) < 4 .or. mod(size(outline), 2) == 1)) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'outline = r, z, r, z, ... are two corners or more.')
-      else if (k%given('r') .and. size(r) /= 2) then
-         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending.')
       else if (k%given('r')) then
-         plate%corners = reshape([r(1), z, r(2), z], [2, 2])
-         if (up) plate%corners = plate%corners(:, [2, 1])
-         if (.not. r(2) > r(1) .or. (model%domain%axisymmetric .and. r(1) < ZERO)) call raise(fault, &
-            EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending and, in axial symmetry, not '// &
-            'negative.')
+         if (size(r) == 2) plate%corners = reshape([r(1), z, r(2), z], [2, 2])
+         good = allocated(plate%corners)
+         if (good) good = r(2) > r(1) .and. .not. (model%domain%axisymmetric .and. r(1) < ZERO)
+         if (good .and. up) plate%corners = plate%corners(:, [2, 1])
+         if (.not. good) call raise(fault, EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending '// &
+                                    'and, in axial symmetry, not negative.')
       else if (k%given('outline')) then
          plate%corners = reshape(outline, [2, size(outline)/2])
       end if
@@ -106,21 +105,19 @@ contains
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate
       type(fault_t), intent(inout) :: fault
-      integer :: i, k
+      integer :: i, k, n
 
       if (plate%group == 0) return
       do i = 1, size(model%plates)
          if (model%plates(i)%group == 0) cycle
-         associate (other => model%domain%mesh%groups(model%plates(i)%group), &
+         associate (other => model%domain%mesh%groups(model%plates(i)%group)%nodes, &
                     own => model%domain%mesh%groups(plate%group))
-            do k = 1, size(own%nodes)
-               if (.not. any(other%nodes == own%nodes(k))) cycle
-               call raise(fault, EXIT_GROUP, place_of(plate)//'its boundary '''//trim(own%name)// &
-                          ''' shares node '//whole(own%nodes(k))//' with that of the plate '''// &
-                          trim(model%plates(i)%name)//''': they would be one body; give one plate, on a group '// &
-                          'that has both.')
-               return
-            end do
+            k = findloc([(any(other == own%nodes(n)), n=1, size(own%nodes))], .true., dim=1)
+            if (k == 0) cycle
+            call raise(fault, EXIT_GROUP, place_of(plate)//'its boundary '''//trim(own%name)//''' shares node '// &
+                       whole(own%nodes(k))//' with that of the plate '''//trim(model%plates(i)%name)//''': they '// &
+                       'would be one body; give one plate, on a group that has both.')
+            return
          end associate
       end do
    end subroutine check_apart

@@ -322,15 +322,10 @@ contains
       if (plate%group == 0) then
          if (plate%corners(1, 2) < plate%corners(1, 1)) return
       end if
-      do i = 1, size(model%fixes)
-         if (moves(model%fixes(i)%group_name) .and. model%fixes(i)%field <= DISPLACEMENTS) return
-      end do
-      do i = 1, size(model%loads)
-         if (moves(model%loads(i)%group_name)) return
-      end do
-      do i = 1, size(model%initials)
-         if (moves(model%initials(i)%group_name) .and. abs(model%initials(i)%v_z) > 0.0_wp) return
-      end do
+      if (any([(moves(model%fixes(i)%group_name) .and. model%fixes(i)%field <= DISPLACEMENTS, &
+                i=1, size(model%fixes)), (moves(model%loads(i)%group_name), i=1, size(model%loads)), &
+               (moves(model%initials(i)%group_name) .and. abs(model%initials(i)%v_z) > 0.0_wp, &
+                i=1, size(model%initials))])) return
       call print_warning(place_of(plate)//'nothing presses the plate '''//trim(plate%name)//''' down: it has no '// &
          'weight (weight = ''yes'' and gravity), no negative force (force acts upwards), no &fix and no &load.')
    contains
