@@ -11,18 +11,17 @@ module boundary_builder
                           contact_pair_t, tie_t
    use name_search, only: mesh_group, history_named
    use scene_parts, only: acts_in, place_of, LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, &
-                          LOAD_FORCE_Z, LOAD_OF_BODY, PRESCRIBED_OF_BODY
+                          LOAD_FORCE_Z, LOAD_OF_BODY, PRESCRIBED_WORDS, PRESCRIBED_OF_BODY
    use scene_types, only: item_of
    use texts, only: short, whole, LENGTH
    use triangle_mesh, only: find_group, add_group
-   use unknown_fields, only: FIELD_NAMES, AT_U_Z, AT_P_W, AT_P_C
+   use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: build_plate, build_initial, build_fix, build_load, build_contact, build_tie, add_body
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    character(*), parameter :: STAGES = 'names of stages; default: all'
-   character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
 contains
    !> &plate, before what acts on it: one with a face of its own becomes a node of the mesh, and each becomes a group of
    !> it. docs/theory/host.md section 7.3. Fault EXIT_INPUT: keys that contradict each other. EXIT_GROUP: the name is
@@ -236,7 +235,7 @@ contains
                     'u_z), a history, and not hold = ''yes''.')
       else if ((fix%field == AT_P_W .and. .not. model%domain%with_w) .or. &
                (fix%field >= AT_P_C .and. .not. model%domain%with_c)) then
-         call raise(fault, EXIT_INPUT, place_of(fix)//'the scene has no field '//WORD_OF(fix%field)// &
+         call raise(fault, EXIT_INPUT, place_of(fix)//'the scene has no field '//PRESCRIBED_WORDS(fix%field)// &
                     '; see fields in &scene.')
       end if
       fix%what = '&fix'

@@ -6,9 +6,10 @@ module boundary_warnings
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
    use model_types, only: model_t, acting_t, fix_t
-   use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A
+   use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A, &
+                          PRESCRIBED_WORDS
    use texts, only: short, whole
-   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: warn_of_boundaries
@@ -16,8 +17,6 @@ module boundary_warnings
    real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of a prescribed value.
    real(wp), parameter :: AT_ONCE = 1.0e-3_wp    !< Share of the range of a history that is no sudden load.
    real(wp), parameter :: BRIEF = 0.1_wp         !< Share of the time before a stage that a pulse lasts.
-
-   character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
 contains
    !> Prints all of them.
    subroutine warn_of_boundaries(model)
@@ -52,7 +51,7 @@ contains
                                    any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
                                    node=1, size(nodes))], .true., dim=1)
                      if (n == 0) cycle before
-                     call print_warning(place_of(one)//WORDS(one%field)//' of the node at ('// &
+                     call print_warning(place_of(one)//PRESCRIBED_WORDS(one%field)//' of the node at ('// &
                         short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
                         ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
                         trim(model%fixes(j)%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
@@ -205,9 +204,9 @@ contains
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
             if (one%field <= DISPLACEMENTS) cycle
-            call look_at_stages(one, WORDS(one%field))
+            call look_at_stages(one, PRESCRIBED_WORDS(one%field))
             if (.not. all(flows(nodes))) call print_warning(place_of(one)// &
-               trim(WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
+               trim(PRESCRIBED_WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
                whole(size(nodes))//' nodes of '''//trim(one%group_name)//''': the others lie in no region with '// &
                'drainage = ''coupled''.')
          end associate
