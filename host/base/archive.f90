@@ -196,10 +196,8 @@ contains
       extents = -1
       if (allocated(values)) extents = shape(values)
       call exchange_extents(self, name, extents)
-      if (self%reading) then
-         if (allocated(values)) deallocate (values)
-         if (extents(1) >= 0) allocate (values(extents(1)))
-      end if
+      if (self%reading .and. allocated(values)) deallocate (values)
+      if (self%reading .and. extents(1) >= 0) allocate (values(extents(1)))
       if (allocated(values)) call self%exchange_reals(name, values, unit, meaning)
    end subroutine exchange_real_list
 
@@ -212,10 +210,8 @@ contains
       extents = -1
       if (allocated(values)) extents = shape(values)
       call exchange_extents(self, name, extents)
-      if (self%reading) then
-         if (allocated(values)) deallocate (values)
-         if (extents(1) >= 0) allocate (values(extents(1), extents(2)))
-      end if
+      if (self%reading .and. allocated(values)) deallocate (values)
+      if (self%reading .and. extents(1) >= 0) allocate (values(extents(1), extents(2)))
       if (allocated(values)) call self%exchange_reals(name, values, unit, meaning)
    end subroutine exchange_real_table
 
@@ -228,10 +224,8 @@ contains
       extents = -1
       if (allocated(values)) extents = shape(values)
       call exchange_extents(self, name, extents)
-      if (self%reading) then
-         if (allocated(values)) deallocate (values)
-         if (extents(1) >= 0) allocate (values(extents(1)), source=0)
-      end if
+      if (self%reading .and. allocated(values)) deallocate (values)
+      if (self%reading .and. extents(1) >= 0) allocate (values(extents(1)), source=0)
       if (allocated(values)) call self%exchange_wholes(name, values, unit, meaning)
    end subroutine exchange_whole_list
 end module archive

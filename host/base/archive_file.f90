@@ -5,7 +5,7 @@ module archive_file
    use faults, only: fault_t, raise, EXIT_RESTART
    use hdf5_file, only: h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extents_of
    use kinds, only: wp
-   use library_version, only: library
+   use library_tables, only: library_version
    implicit none (type, external)
    private
    public :: archive_file_t, archive_kind_t, create_archive, open_archive, close_archive
@@ -36,7 +36,7 @@ contains
       call new_file(archive%file, path, guarded=.true.)
       call put_text(archive%file, 'kind', trim(kind%kind))
       call put_text(archive%file, 'format', trim(kind%format))
-      call put_text(archive%file, 'library', library())
+      call put_text(archive%file, 'library', library_version())
    end subroutine create_archive
 
    !> Opens an archive to read. Fault EXIT_RESTART, and the file is closed: no such file, a truncated one, one of
@@ -58,7 +58,7 @@ contains
       end if
       format = get_text(archive%file, 'format')
       theirs = get_text(archive%file, 'library')
-      here = library()
+      here = library_version()
       if (get_text(archive%file, 'kind') /= kind%kind) then
          call raise(fault, EXIT_RESTART, path//trim(kind%other))
       else if (format /= kind%format .or. theirs /= here) then

@@ -44,26 +44,22 @@ contains
       character(*), intent(in) :: path
       logical, intent(in), optional :: guarded
       integer(hid_t) :: access, creation
-      integer :: status
+      integer :: s(6)
 
       file%path = path
       call begin(file)
-      call h5pcreate_f(H5P_FILE_CREATE_F, creation, status)
-      call note(file, status)
-      call h5pset_obj_track_times_f(creation, .false., status)   ! of the root group, in the later format
-      call note(file, status)
-      call h5pcreate_f(H5P_FILE_ACCESS_F, access, status)
-      call note(file, status)
-      call h5pset_fapl_core_f(access, GROWTH, .true., status)
-      call note(file, status)
+      s = 0
+      call h5pcreate_f(H5P_FILE_CREATE_F, creation, s(1))
+      call h5pset_obj_track_times_f(creation, .false., s(2))   ! of the root group, in the later format
+      call h5pcreate_f(H5P_FILE_ACCESS_F, access, s(3))
+      call h5pset_fapl_core_f(access, GROWTH, .true., s(4))
       if (present(guarded)) then
-         if (guarded) call h5pset_libver_bounds_f(access, H5F_LIBVER_V110_F, H5F_LIBVER_V110_F, status)
-         call note(file, status)
+         if (guarded) call h5pset_libver_bounds_f(access, H5F_LIBVER_V110_F, H5F_LIBVER_V110_F, s(5))
       end if
-      call h5fcreate_f(path//PART, H5F_ACC_TRUNC_F, file%id, status, creation, access)
-      call note(file, status)
-      call h5pclose_f(creation, status)
-      call h5pclose_f(access, status)
+      call h5fcreate_f(path//PART, H5F_ACC_TRUNC_F, file%id, s(6), creation, access)
+      call note(file, s)
+      call h5pclose_f(creation, s(1))
+      call h5pclose_f(access, s(2))
    end subroutine new_file
 
    !> Writes a file from memory to the disk and closes it. good is false where this call or one before it failed; a file
@@ -74,7 +70,7 @@ contains
       integer :: status
 
       call h5fclose_f(file%id, status)
-      call note(file, status)
+      call note(file, [status])
       file%id = -1
       good = file%good
       if (good) call name_part(file%path, good)
@@ -89,7 +85,7 @@ contains
 
       call begin(file)
       call h5fopen_f(path, H5F_ACC_RDONLY_F, file%id, status)
-      call note(file, status)
+      call note(file, [status])
    end subroutine open_file
 
    !> Closes a file that was opened for reading.
@@ -106,15 +102,15 @@ contains
       integer :: status
 
       call h5open_f(status)
-      call note(file, status)
+      call note(file, [status])
       call h5eset_auto_f(0, status)   ! no printing: faults come back as codes
    end subroutine begin
 
    subroutine note(file, status)
       type(h5_t), intent(inout) :: file
-      integer, intent(in) :: status
+      integer, intent(in) :: status(:)   !< Outcomes of calls, negative where one failed.
 
-      if (status < 0) file%good = .false.
+      if (any(status < 0)) file%good = .false.
    end subroutine note
 
    subroutine put_real(file, name, values, unit, meaning)
@@ -142,32 +138,26 @@ contains
       type(c_ptr), intent(in) :: values
       integer(hid_t) :: space, layout, links, set
       integer(hsize_t) :: dims(max(1, size(extent)))
-      integer :: status
+      integer :: s(10)
 
       dims = 1
       dims(:size(extent)) = extent
-      call h5screate_simple_f(size(dims), dims, space, status)
-      call note(file, status)
-      call h5pcreate_f(H5P_DATASET_CREATE_F, layout, status)
-      call h5pset_obj_track_times_f(layout, .false., status)
-      call note(file, status)
-      call h5pset_chunk_f(layout, size(dims), dims, status)
-      call h5pset_fletcher32_f(layout, status)
-      call note(file, status)
-      call h5pcreate_f(H5P_LINK_CREATE_F, links, status)
-      call h5pset_create_inter_group_f(links, 1, status)
-      call note(file, status)
-      call h5dcreate_f(file%id, name, kind, space, set, status, dcpl_id=layout, lcpl_id=links)
-      call note(file, status)
-      call h5dwrite_f(set, kind, values, status)
-      call note(file, status)
+      call h5screate_simple_f(size(dims), dims, space, s(1))
+      call h5pcreate_f(H5P_DATASET_CREATE_F, layout, s(2))
+      call h5pset_obj_track_times_f(layout, .false., s(3))
+      call h5pset_chunk_f(layout, size(dims), dims, s(4))
+      call h5pset_fletcher32_f(layout, s(5))
+      call h5pcreate_f(H5P_LINK_CREATE_F, links, s(6))
+      call h5pset_create_inter_group_f(links, 1, s(7))
+      call h5dcreate_f(file%id, name, kind, space, set, s(8), dcpl_id=layout, lcpl_id=links)
+      call h5dwrite_f(set, kind, values, s(9))
       call put_attribute(file, set, 'unit', unit)
       call put_attribute(file, set, 'description', meaning)
-      call h5dclose_f(set, status)
-      call note(file, status)
-      call h5pclose_f(links, status)
-      call h5pclose_f(layout, status)
-      call h5sclose_f(space, status)
+      call h5dclose_f(set, s(10))
+      call note(file, s)
+      call h5pclose_f(links, s(1))
+      call h5pclose_f(layout, s(2))
+      call h5sclose_f(space, s(3))
    end subroutine put_raw
 
    !> A fact about the whole file. file%good is false after a failure.
@@ -184,20 +174,18 @@ contains
       character(*), intent(in) :: name, text
       integer(hid_t) :: kind, space, attribute
       integer(hsize_t) :: extent(1)
-      integer :: status
+      integer :: s(5)
 
       extent = 1
-      call h5tcopy_f(H5T_FORTRAN_S1, kind, status)
-      call h5tset_size_f(kind, int(max(len(text), 1), size_t), status)
-      call h5screate_f(H5S_SCALAR_F, space, status)
-      call note(file, status)
-      call h5acreate_f(owner, name, kind, space, attribute, status)
-      call note(file, status)
-      call h5awrite_f(attribute, kind, text, extent, status)
-      call note(file, status)
-      call h5aclose_f(attribute, status)
-      call h5sclose_f(space, status)
-      call h5tclose_f(kind, status)
+      call h5tcopy_f(H5T_FORTRAN_S1, kind, s(1))
+      call h5tset_size_f(kind, int(max(len(text), 1), size_t), s(2))
+      call h5screate_f(H5S_SCALAR_F, space, s(3))
+      call h5acreate_f(owner, name, kind, space, attribute, s(4))
+      call h5awrite_f(attribute, kind, text, extent, s(5))
+      call note(file, s)
+      call h5aclose_f(attribute, s(1))
+      call h5sclose_f(space, s(2))
+      call h5tclose_f(kind, s(3))
    end subroutine put_attribute
 
    !> A text of the file, blank if it has none of that name. Cut to TEXT_LENGTH characters.
@@ -278,7 +266,7 @@ contains
       type(c_ptr) :: place
 
       call h5dopen_f(file%id, name, set, status)
-      call note(file, status)
+      call note(file, [status])
       if (status < 0) return
       call extent_of_set(set, rank, dims)
       if (rank /= max(1, size(extent))) then
@@ -288,7 +276,7 @@ contains
       else
          place = values
          call h5dread_f(set, H5T_NATIVE_DOUBLE, place, status)
-         call note(file, status)
+         call note(file, [status])
       end if
       call h5dclose_f(set, status)
    end subroutine get_raw

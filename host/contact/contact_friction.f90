@@ -3,7 +3,7 @@
 !> forces that tangential tractions exert, and the law of a node: stick on a penalty, slip at the limit.
 !> docs/theory/contact.md section 9.
 module contact_friction
-   use contact_mortar, only: point_t, hats, hat_slopes
+   use contact_mortar, only: point_t, hats, hat_slopes, forces_on_nodes
    use contact_response, only: response_t, add_work
    use contact_types, only: contact_options_t
    use kinds, only: wp
@@ -86,7 +86,7 @@ contains
       real(wp), intent(in) :: dx(2, 6)   !< Way of the nodes since the start of the step [m].
       real(wp), intent(out) :: weighted_slip(3), d_weighted_slip(12, 3), drag(12, 3)
       real(wp) :: m(3), dm(3), of_point(12), d_way(12), way(2), bend(2, 2), along
-      integer :: k, a, i
+      integer :: k, a
 
       weighted_slip = 0.0_wp
       d_weighted_slip = 0.0_wp
@@ -100,10 +100,7 @@ contains
             bend(:, 2) = -matmul(dx(:, 4:6), p%dnm)
             along = dot_product(p%t, way)
             d_way = matmul(way, p%d_t) + dot_product(p%t, bend(:, 1))*p%d_s + dot_product(p%t, bend(:, 2))*p%d_m
-            do i = 1, 3
-               of_point(2*i - 1:2*i) = p%ns(i)*p%t
-               of_point(2*i + 5:2*i + 6) = -p%nm(i)*p%t
-            end do
+            of_point = forces_on_nodes(p, p%t)
             do a = 1, 3
                if (m(a) <= 0.0_wp) cycle
                weighted_slip(a) = weighted_slip(a) + p%area*m(a)*along

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Two surfaces that may come into contact: their edges, once per mesh, and whether given coordinates will
-!> do. docs/theory/contact.md section 2.
+!> Two surfaces that may come into contact: their edges, once per mesh, whether given coordinates will do, and boxes
+!> around edges, of which those that meet may lie opposite each other. docs/theory/contact.md section 2.
 module contact_geometry
    use contact_projection, only: edge_of, least_stretch
    use contact_types, only: contact_options_t, contact_status_t, is_finite, CONTACT_OK, CONTACT_BAD_EDGE, &
@@ -8,7 +8,7 @@ module contact_geometry
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: contact_geometry_t, contact_prepare, check_coordinates
+   public :: contact_geometry_t, contact_prepare, check_coordinates, edge_boxes, boxes_around, boxes_meet
 
    !> A tangent of this share of half the chord is none: rounding of a fold leaves 1e-8, the root of 1e-16.
    real(wp), parameter :: LEAST_STRETCH_LENGTH = 1.0e-6_wp
@@ -53,26 +53,21 @@ contains
       integer, allocatable, intent(out) :: edges_of(:, :)
       type(contact_status_t), intent(out) :: status
       integer :: e, i, node
+      logical :: good
 
       allocate (edges_of(2, max(nodes, 0)), source=0)
       do e = 1, size(edges, 2)
          do i = 1, 3
             node = edges(i, e)
-            if (node < 1 .or. node > nodes) then
-               status = contact_status_t(CONTACT_BAD_EDGE, e, master, real(node, wp))
-               return
-            end if
             ! A middle node fills both places, so that nobody else may have it.
-            if (edges_of(2, node) /= 0 .or. (i == 3 .and. edges_of(1, node) /= 0)) then
+            good = node >= 1 .and. node <= nodes
+            if (good) good = edges_of(2, node) == 0 .and. (i < 3 .or. edges_of(1, node) == 0)
+            if (.not. good) then
                status = contact_status_t(CONTACT_BAD_EDGE, e, master, real(node, wp))
                return
             end if
-            if (edges_of(1, node) == 0) then
-               edges_of(1, node) = e
-               if (i == 3) edges_of(2, node) = e
-            else
-               edges_of(2, node) = e
-            end if
+            if (i == 3 .or. edges_of(1, node) > 0) edges_of(2, node) = e
+            if (edges_of(1, node) == 0) edges_of(1, node) = e
          end do
       end do
       do e = 1, size(edges, 2)
@@ -123,4 +118,48 @@ contains
          return
       end do
    end subroutine check_surface
+
+   !> Boxes of edges, widened by a search radius; with 0 each by its own length, so that a long edge elsewhere makes
+   !> nothing of the others' neighbourhood. Every pair of boxes is compared: edges of a boundary are about as many as
+   !> the root of the triangles of its mesh, so that all comparisons together cost less than a hundredth of a pass over
+   !> these.
+   pure subroutine boxes_around(x, edges, search_radius, box)
+      real(wp), intent(in) :: x(:, :)         !< (2, nodes) [m]
+      integer, intent(in) :: edges(:, :)      !< (3, edges) start, end, middle.
+      real(wp), intent(in) :: search_radius   !< [m], >= 0
+      real(wp), intent(out) :: box(:, :)      !< (4, edges) [m]
+      real(wp) :: near
+      integer :: e
+
+      call edge_boxes(x, edges, box)
+      near = search_radius
+      do e = 1, size(edges, 2)
+         if (.not. search_radius > 0.0_wp) near = norm2(x(:, edges(2, e)) - x(:, edges(1, e)))
+         box(:, e) = box(:, e) + near*[-1, -1, 1, 1]
+      end do
+   end subroutine boxes_around
+
+   !> Box of the control polygon of every edge, which holds the curve: lower r, lower z, upper r, upper z.
+   pure subroutine edge_boxes(x, edges, box)
+      real(wp), intent(in) :: x(:, :)   !< (2, nodes) [m]
+      integer, intent(in) :: edges(:, :)   !< (3, edges) start, end, middle.
+      real(wp), intent(out) :: box(:, :)   !< (4, edges) [m]
+      real(wp) :: a(2), b(2), control(2)
+      integer :: e
+
+      do e = 1, size(edges, 2)
+         a = x(:, edges(1, e))
+         b = x(:, edges(2, e))
+         control = 2.0_wp*x(:, edges(3, e)) - 0.5_wp*(a + b)
+         box(1:2, e) = min(a, b, control)
+         box(3:4, e) = max(a, b, control)
+      end do
+   end subroutine edge_boxes
+
+   !> Whether two boxes (lower r, lower z, upper r, upper z) have a point in common.
+   pure logical function boxes_meet(a, b)
+      real(wp), intent(in) :: a(4), b(4)   !< [m]
+
+      boxes_meet = all(a(1:2) <= b(3:4)) .and. all(b(1:2) <= a(3:4))
+   end function boxes_meet
 end module contact_geometry

@@ -467,37 +467,24 @@ contains
       real(wp), intent(in) :: x(:, :)
       real(wp), allocatable, intent(out) :: force(:)
 
+      real(wp), allocatable :: f(:)
+      integer :: c, k, n
+
       allocate (force(dofs%n), source=0.0_wp)
       good = self%probe(x)
-      if (good) call gather_probes()
-   contains
-      subroutine gather_probes()
-         integer :: c, n
-
-         do c = 1, size(self%interfaces)
-            associate (t => self%interfaces(c))
-               if (.not. t%acts) cycle
-               if (allocated(t%plate%motion)) then
-                  n = 2*t%geometry%slave_nodes
-                  call gather(t%unknown(:n), t%probe%force(:n))
-                  call gather(t%unknown(n + 1:), force_on_plate(t%geometry, t%probe, &
-                     t%plate%motion%slopes(t%master%x0, motion_of(t%plate, x))))
-               else
-                  call gather(t%unknown, t%probe%force)
-               end if
-            end associate
-         end do
-      end subroutine gather_probes
-
-      subroutine gather(u, f)
-         integer, intent(in) :: u(:)
-         real(wp), intent(in) :: f(:)
-         integer :: k
-
-         do k = 1, size(u)
-            if (u(k) > 0) force(u(k)) = force(u(k)) + f(k)
-         end do
-      end subroutine gather
+      if (.not. good) return
+      do c = 1, size(self%interfaces)
+         associate (t => self%interfaces(c))
+            if (.not. t%acts) cycle
+            f = t%probe%force
+            n = 2*t%geometry%slave_nodes
+            if (allocated(t%plate%motion)) f = [f(:n), force_on_plate(t%geometry, t%probe, &
+               t%plate%motion%slopes(t%master%x0, motion_of(t%plate, x)))]
+            do k = 1, size(f)
+               if (t%unknown(k) > 0) force(t%unknown(k)) = force(t%unknown(k)) + f(k)
+            end do
+         end associate
+      end do
    end function forces
 
    !> Exchanges with an archive the tractions of friction, which contacts carry from step to step.

@@ -15,7 +15,8 @@ module contact_mortar
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, find_overlap, integration_point, pair_points, pair_gaps, penetration, hats, hat_slopes
+   public :: overlap_t, point_t, find_overlap, integration_point, pair_points, pair_gaps, penetration, hats, &
+             hat_slopes, forces_on_nodes
    public :: POINTS, POSITION, SHARE, LARGEST_POINTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
@@ -279,7 +280,7 @@ contains
          associate (p => points(k))
             m = hats(p%s)
             dm = hat_slopes(p%s)
-            of_point = unit_force_on_nodes(p)
+            of_point = forces_on_nodes(p, [p%t(2), -p%t(1)])
             do a = 1, 3
                if (m(a) <= 0.0_wp) cycle
                weight(a) = weight(a) + p%area*m(a)*p%length
@@ -293,17 +294,19 @@ contains
       end do
    end subroutine pair_gaps
 
-   !> Forces on the nodes of a pair [-], slave first, of a unit force that pushes the surfaces apart at a point.
-   !> docs/theory/contact.md section 2.3.
-   pure function unit_force_on_nodes(p) result(push)
+   !> Forces on the nodes of a pair, slave first, of a unit force along a direction that pushes the surfaces apart at a
+   !> point. docs/theory/contact.md sections 2.3 and 9.
+   pure function forces_on_nodes(p, along) result(force)
       type(point_t), intent(in) :: p
-      real(wp) :: push(12)
+      real(wp), intent(in) :: along(2)   !< As long as the slave's tangent [m].
+      real(wp) :: force(12)
+      integer :: i
 
-      push(1:5:2) = p%t(2)*p%ns
-      push(2:6:2) = -p%t(1)*p%ns
-      push(7:11:2) = -p%t(2)*p%nm
-      push(8:12:2) = p%t(1)*p%nm
-   end function unit_force_on_nodes
+      do i = 1, 3
+         force(2*i - 1:2*i) = p%ns(i)*along
+         force(2*i + 5:2*i + 6) = -p%nm(i)*along
+      end do
+   end function forces_on_nodes
 
    !> Deepest penetration of a pair of edges [m], 0 if it is open: at the ends of the segments too, where corners are.
    !> docs/theory/contact.md sections 2.1 and 2.4.

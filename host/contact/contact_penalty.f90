@@ -5,20 +5,21 @@
 module contact_penalty
    use contact_friction, only: friction_t, traction_t, pair_slips, drag_response, traction_at, &
                                tangential_stiffness, touching_share
-   use contact_geometry, only: contact_geometry_t, check_coordinates
+   use contact_geometry, only: contact_geometry_t, check_coordinates, edge_boxes, boxes_around, boxes_meet
    use contact_mortar, only: overlap_t, point_t, find_overlap, pair_points, pair_gaps, penetration, hats, POINTS, &
                              POSITION, SHARE, LARGEST_POINTS
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, nodal_forces_t, pair_response, new_forces, make_room, add_column
-   use contact_search, only: search_t, find_candidates
-   use contact_types, only: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t, &
+   use contact_types, only: TWO_PI, COMBINED_GAP, contact_options_t, contact_status_t, &
                             CONTACT_OK, CONTACT_NO_PROJECTION
    use kinds, only: wp
    implicit none (type, external)
    private
    public :: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, slid_work
 
-   real(wp), parameter :: POINTWISE_SHARE = 0.5_wp   !< Share of the penalty, where both gaps are penalised [-].
+   !> Share of the penalty on the gap at points, where nodal gaps, those at points or both are penalised [-].
+   !> docs/theory/contact.md section 2.4.
+   real(wp), parameter :: SHARE_AT_POINTS(3) = [0.0_wp, 1.0_wp, 0.5_wp]
 
    !> A slave edge with a master edge opposite.
    type :: pair_t
@@ -150,20 +151,21 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
-      type(search_t) :: search
+      real(wp) :: slaves(4, size(geometry%slave_edges, 2)), masters(4, size(geometry%master_edges, 2))
       real(wp) :: weight(3), weighted_gap(3), missed
-      integer :: e, c, n
+      integer :: e, master, n
 
-      call find_candidates(search, slave_x, geometry%slave_edges, master_x, geometry%master_edges, &
-                           geometry%options%search_radius)
+      call boxes_around(slave_x, geometry%slave_edges, geometry%options%search_radius, slaves)
+      call edge_boxes(master_x, geometry%master_edges, masters)
       result%weight = 0.0_wp
       result%gap = 0.0_wp
       n = 0
       do e = 1, size(geometry%slave_edges, 2)
          work%first_pair(e) = n + 1
-         do c = search%first(e), search%first(e + 1) - 1
+         do master = 1, size(masters, 2)
+            if (.not. boxes_meet(slaves(:, e), masters(:, master))) cycle
             if (n == size(work%pair)) call grow_pairs(work%pair)
-            associate (pair => work%pair(n + 1), master => search%candidate(c))
+            associate (pair => work%pair(n + 1))
                pair%x = of_edges(geometry, e, master, slave_x, master_x)
                call find_overlap(pair%x, geometry%free(geometry%master_edges(1:2, master)), pair%overlap)
                if (pair%overlap%segments == 0) cycle
@@ -200,38 +202,46 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
-      type(contact_options_t) :: nodal, pointwise
-      real(wp) :: energy
+      type(response_t) :: response
+      real(wp) :: at_points, at_nodes, energy
+      real(wp) :: depth   !< Penetration that no pressure answers, over its edge [-].
       logical :: pressed
       integer :: i
 
       result%pressure = 0.0_wp
       result%unpressed = 0.0_wp
       work%load = 0.0_wp
-      call share_penalty(geometry%options, nodal, pointwise)
-      if (nodal%penalty > 0.0_wp) then
-         result%pressure = nodal%penalty*max(-result%gap, 0.0_wp)
-         result%energy = sum(0.5_wp*result%weight*result%pressure**2)/nodal%penalty
+      at_points = SHARE_AT_POINTS(geometry%options%gap)*geometry%options%penalty
+      at_nodes = geometry%options%penalty - at_points
+      if (at_nodes > 0.0_wp) then
+         result%pressure = at_nodes*max(-result%gap, 0.0_wp)
+         result%energy = sum(0.5_wp*result%weight*result%pressure**2)/at_nodes
       end if
       do i = 1, result%pairs
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
             energy = result%energy
             pressed = any(result%pressure(nodes) > 0.0_wp)
-            if (pressed) call add_pair(geometry, nodal, pair, with_tangent, work%load, result, status)
-            if (pointwise%penalty > 0.0_wp) &
-               call add_pair(geometry, pointwise, pair, with_tangent, work%load, result, status)
+            if (pressed) then
+               call pair_response(pair%points(:pair%n), 0.0_wp, result%pressure(nodes), with_tangent, response)
+               call add_response(unknowns_of(geometry, pair%slave, pair%master), response, with_tangent, result)
+            end if
+            if (at_points > 0.0_wp) &
+               call press_points(geometry, at_points, pair, with_tangent, work%load, result, status)
             if (status%code /= CONTACT_OK) return
             ! Combined gaps press wherever they look, and they look at the ends.
-            if (.not. (pressed .or. result%energy > energy .or. geometry%options%gap == COMBINED_GAP)) &
-               call note_unpressed(penetration(pair%x, pair%overlap), pair%x, result)
+            if (pressed .or. result%energy > energy .or. geometry%options%gap == COMBINED_GAP) cycle
+            depth = penetration(pair%x, pair%overlap)/norm2(pair%x(:, 2) - pair%x(:, 1))
+            if (depth <= result%unpressed) cycle
+            result%unpressed = depth
+            result%unpressed_at = pair%x(:, 3)
          end associate
       end do
       if (with_tangent) then
          do i = 1, geometry%slave_nodes
-            if (result%pressure(i) > 0.0_wp) call add_node(geometry, i, work, result, -nodal%penalty)
+            if (result%pressure(i) > 0.0_wp) call add_node(geometry, i, work, result, -at_nodes)
          end do
       end if
-      if (pointwise%penalty > 0.0_wp) then
+      if (at_points > 0.0_wp) then
          where (result%weight > 0.0_wp) result%pressure = result%pressure + work%load/result%weight
       end if
    end subroutine respond
@@ -297,43 +307,38 @@ contains
       end do
    end function slid_work
 
-   !> Adds the parts of a pair to forces, energy and tangent.
-   pure subroutine add_pair(geometry, options, pair, with_tangent, work, result, status)
+   !> Adds the parts of a pair that the gap at its points gives to forces, energy and tangent.
+   pure subroutine press_points(geometry, penalty, pair, with_tangent, load, result, status)
       type(contact_geometry_t), intent(in) :: geometry
-      type(contact_options_t), intent(in) :: options   !< Options of the nodal or of the pointwise form.
+      real(wp), intent(in) :: penalty                  !< [kN/m3]
       type(pair_t), intent(in) :: pair
       logical, intent(in) :: with_tangent
-      real(wp), intent(inout) :: work(:)               !< int M_A p 2 pi r dGamma [kN]
+      real(wp), intent(inout) :: load(:)               !< int M_A p 2 pi r dGamma [kN]
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(inout) :: status
       type(response_t) :: response
       type(point_t) :: ends(LARGEST_POINTS)
       real(wp) :: missed
       integer :: n
-      logical :: acts
 
-      if (status%code /= CONTACT_OK) return
       associate (nodes => geometry%slave_edges(:, pair%slave))
-         if (geometry%options%gap == COMBINED_GAP .and. options%gap == POINTWISE_GAP) then
+         if (geometry%options%gap == COMBINED_GAP) then
             ! A corner lies at the end of a segment, where the rule of the pressures does not look.
-            call pair_points(pair%x, pair%overlap, .true., options%axisymmetric, ends, n, missed)
+            call pair_points(pair%x, pair%overlap, .true., geometry%options%axisymmetric, ends, n, missed)
             if (missed > 0.0_wp) then
                status = contact_status_t(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
                return
             end if
-            call pair_response(ends(:n), options, result%pressure(nodes), with_tangent, response)
+            call pair_response(ends(:n), penalty, result%pressure(nodes), with_tangent, response)
          else
-            call pair_response(pair%points(:pair%n), options, result%pressure(nodes), with_tangent, response)
+            call pair_response(pair%points(:pair%n), penalty, result%pressure(nodes), with_tangent, response)
          end if
-         acts = .true.
-         if (options%gap == POINTWISE_GAP) then
-            result%energy = result%energy + response%energy
-            work(nodes) = work(nodes) + response%load
-            acts = .not. response%energy <= 0.0_wp
-         end if
-         call add_response(unknowns_of(geometry, pair%slave, pair%master), response, with_tangent .and. acts, result)
+         result%energy = result%energy + response%energy
+         load(nodes) = load(nodes) + response%load
+         call add_response(unknowns_of(geometry, pair%slave, pair%master), response, &
+                           with_tangent .and. .not. response%energy <= 0.0_wp, result)
       end associate
-   end subroutine add_pair
+   end subroutine press_points
 
    !> Forces of a pair, and its stiffness where the tangent is wanted.
    pure subroutine add_response(unknown, response, with_tangent, result)
@@ -350,39 +355,6 @@ contains
          call add_column(result, unknown, unknown(j), response%stiffness(:, j))
       end do
    end subroutine add_response
-
-   !> A penetration that no pressure answers.
-   pure subroutine note_unpressed(depth, x, result)
-      real(wp), intent(in) :: depth      !< [m]
-      real(wp), intent(in) :: x(2, 6)
-      type(contact_result_t), intent(inout) :: result
-      real(wp) :: share
-
-      share = depth/norm2(x(:, 2) - x(:, 1))
-      if (share <= result%unpressed) return
-      result%unpressed = share
-      result%unpressed_at = x(:, 3)
-   end subroutine note_unpressed
-
-   !> The penalty of either form; 0: it takes no part. docs/theory/contact.md section 2.4.
-   pure subroutine share_penalty(options, nodal, pointwise)
-      type(contact_options_t), intent(in) :: options   !< Options as the caller gave them.
-      type(contact_options_t), intent(out) :: nodal, pointwise
-
-      nodal = options
-      nodal%gap = NODAL_GAP
-      pointwise = options
-      pointwise%gap = POINTWISE_GAP
-      select case (options%gap)
-      case (NODAL_GAP)
-         pointwise%penalty = 0.0_wp
-      case (POINTWISE_GAP)
-         nodal%penalty = 0.0_wp
-      case default
-         pointwise%penalty = POINTWISE_SHARE*options%penalty
-         nodal%penalty = options%penalty - pointwise%penalty
-      end select
-   end subroutine share_penalty
 
    !> Adds the change of a nodal pressure to the tangent, dp_A = by_gap dg_A times what a unit of p_A pushes; with
    !> by_slip that of a nodal traction, dt_A = by_gap dg_A + by_slip ds_A times what a unit of t_A drags. Over all

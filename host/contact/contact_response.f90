@@ -5,8 +5,7 @@
 !>   pointwise gaps  p = eps <-g>.
 !> docs/theory/contact.md section 3.
 module contact_response
-   use contact_mortar, only: point_t, hats, hat_slopes
-   use contact_types, only: contact_options_t, NODAL_GAP
+   use contact_mortar, only: point_t, hats, hat_slopes, forces_on_nodes
    use kinds, only: wp
    implicit none (type, external)
    private
@@ -71,9 +70,9 @@ contains
 
    !> Forces (12) and, if wanted, stiffness (12, 12) of a pair of edges in local coordinates. docs/theory/contact.md
    !> section 3.
-   pure subroutine pair_response(points, options, pressure, with_stiffness, response)
+   pure subroutine pair_response(points, penalty, pressure, with_stiffness, response)
       type(point_t), intent(in) :: points(:)
-      type(contact_options_t), intent(in) :: options    !< Options of the nodal or the pointwise form.
+      real(wp), intent(in) :: penalty       !< Penalty of the pointwise form [kN/m3]; 0: the nodal form.
       real(wp), intent(in) :: pressure(3)   !< Pressures of the slave nodes [kPa]; not used by the pointwise form.
       logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
@@ -82,15 +81,15 @@ contains
 
       do k = 1, size(points)
          associate (p => points(k))
-            if (options%gap == NODAL_GAP) then
+            if (.not. penalty > 0.0_wp) then
                at_point = dot_product(hats(p%s), pressure)
                d_at_point = dot_product(hat_slopes(p%s), pressure)*p%d_s
             else
                if (p%phi >= 0.0_wp) cycle
                gap = p%phi/p%length
-               at_point = -options%penalty*gap
-               d_at_point = -options%penalty/p%length*(p%d_phi - gap*p%d_length)
-               response%energy = response%energy + 0.5_wp*options%penalty*gap**2*p%length*p%area
+               at_point = -penalty*gap
+               d_at_point = -penalty/p%length*(p%d_phi - gap*p%d_length)
+               response%energy = response%energy + 0.5_wp*penalty*gap**2*p%length*p%area
                response%load = response%load + p%area*p%length*hats(p%s)*at_point
             end if
             d_nu(1, :) = p%d_t(2, :)
@@ -113,10 +112,7 @@ contains
       integer :: i, j, c
 
       load = p%area*pressure
-      do i = 1, 3
-         push(2*i - 1:2*i) = p%ns(i)*nu
-         push(2*i + 5:2*i + 6) = -p%nm(i)*nu
-      end do
+      push = forces_on_nodes(p, nu)
       response%force = response%force + load*push
       if (.not. with_stiffness) return
       d_load = pressure*p%d_area + p%area*d_pressure

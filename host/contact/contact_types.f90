@@ -56,34 +56,29 @@ contains
       type(contact_status_t), intent(in) :: status
       character(*), intent(out) :: text
       character(24) :: value
-      character(6) :: side
-      character(12) :: number
+      character(40) :: where
 
-      side = merge('master', 'slave ', status%master)
-      write (number, '(i0)') status%index
       write (value, '(es13.6)') status%value
+      value = adjustl(value)
+      write (where, '(a,i0,2a)') merge('node ', 'edge ', any(status%code == [CONTACT_NOT_FINITE, &
+         CONTACT_BAD_RADIUS])), status%index, ' of the ', trim(merge('master', 'slave ', status%master))//' surface'
+      text = 'contact: '//where
       select case (status%code)
-      case (CONTACT_OK)
-         text = 'contact: no fault'
       case (CONTACT_BAD_EDGE)
-         text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface names node '//trim(adjustl(value))// &
-                ': it must be one of the surface, in at most two edges, and a middle node in one'
+         text = trim(text)//' names node '//trim(value)//': it must be one of the surface, in at most two edges, '// &
+                'and a middle node in one'
       case (CONTACT_NOT_FINITE)
-         text = 'contact: node '//trim(number)//' of the '//trim(side)//' surface has a coordinate that is not '// &
-                'finite: cut the step'
+         text = trim(text)//' has a coordinate that is not finite: cut the step'
       case (CONTACT_BAD_RADIUS)
-         text = 'contact: node '//trim(number)//' of the '//trim(side)//' surface lies at radius '// &
-                trim(adjustl(value))//' m, it must be >= 0: hold the nodes on the axis, or cut the step'
+         text = trim(text)//' lies at radius '//trim(value)//' m, it must be >= 0: hold the nodes on the axis, or '// &
+                'cut the step'
       case (CONTACT_DISTORTED_EDGE)
-         text = 'contact: edge '//trim(number)//' of the '//trim(side)//' surface is folded or has no '// &
-                'length (least stretch '//trim(adjustl(value))//', must be > 0): keep the middle node within the '// &
-                'middle half, or cut the step'
+         text = trim(text)//' is folded or has no length (least stretch '//trim(value)//', must be > 0): keep the '// &
+                'middle node within the middle half, or cut the step'
       case (CONTACT_NO_PROJECTION)
-         text = 'contact: a normal of slave edge '//trim(number)//' misses the master edge opposite by '// &
-                trim(adjustl(value))//' of its length: the surfaces are too strongly curved for their distance; '// &
-                'refine the edges, lower the search radius or cut the step'
-      case default
-         text = 'contact: unknown status'
+         text = trim(text)//' has a normal that misses the master edge opposite by '//trim(value)//' of its '// &
+                'length: the surfaces are too strongly curved for their distance; refine the edges, lower the '// &
+                'search radius or cut the step'
       end select
    end subroutine contact_message
 

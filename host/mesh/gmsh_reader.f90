@@ -12,22 +12,17 @@ module gmsh_reader
    public :: read_gmsh
 
    integer, parameter :: LINE3 = 8, TRIANGLE6 = 9, POINT = 15   !< Gmsh's element types.
+   integer, parameter :: KINDS(3) = [POINT, LINE3, TRIANGLE6], NODES_OF(3) = [1, 3, 6]
    integer, parameter :: QUADRILATERALS(3) = [3, 10, 16]        !< With 4, 9 and 8 nodes.
    real(wp), parameter :: FLAT = 1.0e-9_wp      !< Share of the mesh that a coordinate which does not vary may vary by.
    integer, parameter :: LONGEST = 4096
    real(wp), parameter :: FARTHEST = 1.0e15_wp   !< [m] Areas and Jacobians of such coordinates are still numbers.
 
-   !> Name of a physical group.
+   !> A physical group: its name, or that a geometric entity belongs to it.
    type :: physical_t
-      integer :: dimension = 0, tag = 0
+      integer :: dimension = 0, tag = 0, entity = 0
       character(NAME_LENGTH) :: name = ''
    end type physical_t
-
-   !> Physical tags of a geometric entity.
-   type :: entity_t
-      integer :: dimension = 0, tag = 0
-      integer, allocatable :: physical(:)
-   end type entity_t
 
    !> The elements of one block of $Elements.
    type :: block_t
@@ -35,11 +30,17 @@ module gmsh_reader
       integer, allocatable :: nodes(:, :)
    end type block_t
 
+   !> A mesh file and what has been read of it.
    type :: reader_t
       character(:), allocatable :: file
       integer :: unit = 0, line = 0
       integer :: bytes = 0   !< Size of the file: what it announces beyond is not there.
-      character(LONGEST) :: text = ''
+      character(LONGEST) :: text = ''   !< The present line.
+      type(fault_t) :: fault   !< The first.
+      type(physical_t), allocatable :: names(:), members(:)
+      real(wp), allocatable :: xyz(:, :)      !< (3, nodes) [m]
+      integer, allocatable :: number_of(:)    !< Tag to number of a node.
+      type(block_t), allocatable :: blocks(:)
    end type reader_t
 contains
    !> Reads a mesh; a fault names file, line, what is wrong and what is expected. x, y of Gmsh are r, z [m]. Fault
@@ -48,378 +49,325 @@ contains
       character(*), intent(in) :: file
       type(mesh_t), intent(out) :: mesh
       type(fault_t), intent(inout) :: fault
-      type(reader_t) :: reader
-      type(physical_t), allocatable :: names(:)
-      type(entity_t), allocatable :: entities(:)
-      type(block_t), allocatable :: blocks(:)
-      integer, allocatable :: number_of(:)
-      real(wp), allocatable :: xyz(:, :)
+      type(reader_t) :: g
       integer :: status
 
-      reader%file = file
-      allocate (names(0), entities(0), blocks(0), number_of(0))
-      open (newunit=reader%unit, file=file, status='old', action='read', iostat=status)
+      g%file = file
+      allocate (g%names(0), g%members(0), g%blocks(0), g%number_of(0))
+      open (newunit=g%unit, file=file, status='old', action='read', iostat=status)
       if (status /= 0) then
          call raise(fault, EXIT_MESH, trim(file)//': the mesh file cannot be read; its path is relative to the scene.')
          return
       end if
-      inquire (unit=reader%unit, size=reader%bytes)
-      do while (fault%code == 0)
-         read (reader%unit, '(a)', iostat=status) reader%text
+      inquire (unit=g%unit, size=g%bytes)
+      do while (g%fault%code == 0)
+         read (g%unit, '(a)', iostat=status) g%text
          if (status /= 0) exit
-         reader%line = reader%line + 1
-         if (reader%line == 1) reader%text = reader%text(1 + mark_length(reader%text):)
-         select case (trim(reader%text))
+         g%line = g%line + 1
+         if (g%line == 1) g%text = g%text(1 + mark_length(g%text):)
+         select case (trim(g%text))
          case ('$MeshFormat')
-            call read_format(reader, fault)
+            call read_format(g)
          case ('$PhysicalNames')
-            call read_names(reader, names, fault)
+            call read_names(g)
          case ('$Entities')
-            call read_entities(reader, entities, fault)
+            call read_entities(g)
          case ('$PartitionedEntities')
-            call wrong(reader, 'the mesh is partitioned', fault, 'mesh it again without -part and '// &
-                       'Mesh.NbPartitions, or call gmsh.model.mesh.unpartition() in Python and write it')
+            call wrong(g, 'the mesh is partitioned', 'mesh it again without -part and Mesh.NbPartitions, or call '// &
+                       'gmsh.model.mesh.unpartition() in Python and write it')
          case ('$Nodes')
-            call read_nodes(reader, xyz, number_of, fault)
+            call read_nodes(g)
          case ('$Elements')
-            call read_elements(reader, number_of, blocks, fault)
+            call read_elements(g)
          end select
       end do
-      close (reader%unit)
-      if (fault%code == 0 .and. .not. allocated(xyz)) call wrong(reader, 'there is no section $Nodes', fault)
-      if (fault%code == 0) call find_plane(reader, xyz, mesh, fault)
-      if (fault%code == 0) call name_others(entities, names)
-      if (fault%code == 0) call collect_elements(reader, names, entities, blocks, mesh, fault)
+      close (g%unit)
+      if (.not. allocated(g%xyz)) call wrong(g, 'there is no section $Nodes')
+      if (g%fault%code == 0) call find_plane(g, mesh)
+      if (g%fault%code == 0) call collect_elements(g, mesh)
+      if (g%fault%code /= 0) fault = g%fault
    end subroutine read_gmsh
 
-   !> Physical groups that the file gives no name are named by their dimension and number.
-   subroutine name_others(entities, names)
-      type(entity_t), intent(in) :: entities(:)
-      type(physical_t), allocatable, intent(inout) :: names(:)
-      character(7), parameter :: KINDS(0:3) = ['point  ', 'curve  ', 'surface', 'volume ']
-      integer :: i, k, tag
-
-      do i = 1, size(entities)
-         do k = 1, size(entities(i)%physical)
-            tag = abs(entities(i)%physical(k))
-            if (any(names%dimension == entities(i)%dimension .and. names%tag == tag)) cycle
-            names = [names, physical_t(entities(i)%dimension, tag, trim(KINDS(entities(i)%dimension))//'_'//whole(tag))]
-         end do
-      end do
-   end subroutine name_others
-
-   subroutine wrong(reader, what, fault, advice)
-      type(reader_t), intent(in) :: reader
+   subroutine wrong(g, what, advice)
+      type(reader_t), intent(inout) :: g
       character(*), intent(in) :: what
-      type(fault_t), intent(inout) :: fault
       character(*), intent(in), optional :: advice
       character(:), allocatable :: remedy
 
       remedy = 'write the mesh with gmsh -2 -order 2 -format msh41'
       if (present(advice)) remedy = advice
-      if (fault%code == 0) call raise(fault, EXIT_MESH, at_line(reader%file, reader%line)//what//'; '//remedy//'.')
+      if (g%fault%code == 0) call raise(g%fault, EXIT_MESH, at_line(g%file, g%line)//what//'; '//remedy//'.')
    end subroutine wrong
 
    !> The plane of a mesh: x, y, or, where y does not vary and z does, x, z.
-   subroutine find_plane(reader, xyz, mesh, fault)
-      type(reader_t), intent(in) :: reader
-      real(wp), intent(in) :: xyz(:, :)   !< (3, nodes) [m]
+   subroutine find_plane(g, mesh)
+      type(reader_t), intent(inout) :: g
       type(mesh_t), intent(inout) :: mesh
-      type(fault_t), intent(inout) :: fault
       real(wp) :: range(3)
       integer :: up
 
       range = 0.0_wp
-      if (size(xyz, 2) > 0) range = maxval(xyz, dim=2) - minval(xyz, dim=2)
+      if (size(g%xyz, 2) > 0) range = maxval(g%xyz, dim=2) - minval(g%xyz, dim=2)
       up = 2
       if (range(2) <= FLAT*maxval(range)) up = 3
       if (range(5 - up) > FLAT*maxval(range) .or. range(1) <= FLAT*maxval(range)) then
-         call raise(fault, EXIT_MESH, trim(reader%file)//': the mesh lies in no plane x, y or x, z: its nodes '// &
-                    'extend '//short(range(1))//' m along x, '//short(range(2))//' along y, '//short(range(3))// &
-                    ' along z; rotate it into one of them.')
+         call raise(g%fault, EXIT_MESH, trim(g%file)//': the mesh lies in no plane x, y or x, z: its nodes extend '// &
+                    short(range(1))//' m along x, '//short(range(2))//' along y, '//short(range(3))//' along z; '// &
+                    'rotate it into one of them.')
          return
       end if
-      mesh%x = xyz([1, up], :)
+      mesh%x = g%xyz([1, up], :)
    end subroutine find_plane
 
-   subroutine next(reader, fault)
-      type(reader_t), intent(inout) :: reader
-      type(fault_t), intent(inout) :: fault
+   subroutine next(g)
+      type(reader_t), intent(inout) :: g
       integer :: status
 
-      read (reader%unit, '(a)', iostat=status) reader%text
-      reader%line = reader%line + 1
-      if (status /= 0) call wrong(reader, 'the file ends early', fault)
+      read (g%unit, '(a)', iostat=status) g%text
+      g%line = g%line + 1
+      if (status /= 0) call wrong(g, 'the file ends early')
    end subroutine next
 
    !> The integers of the next line.
-   subroutine integers(reader, values, fault)
-      type(reader_t), intent(inout) :: reader
+   subroutine integers(g, values)
+      type(reader_t), intent(inout) :: g
       integer, intent(out) :: values(:)
-      type(fault_t), intent(inout) :: fault
       integer :: status
 
       values = 0
-      call next(reader, fault)
-      if (fault%code /= 0) return
+      call next(g)
       status = 1
-      if (only_numbers(reader)) read (reader%text, *, iostat=status) values
-      if (status /= 0) call wrong(reader, 'expected '//whole(size(values))//' integers', fault)
+      if (only_numbers(g)) read (g%text, *, iostat=status) values
+      if (status /= 0) call wrong(g, 'expected '//whole(size(values))//' integers')
    end subroutine integers
 
    !> Whether the present line holds nothing but numbers: a slash or a star would end or repeat a list without an error.
-   pure logical function only_numbers(reader)
-      type(reader_t), intent(in) :: reader
+   pure logical function only_numbers(g)
+      type(reader_t), intent(in) :: g
 
-      only_numbers = verify(trim(reader%text), '0123456789+-.eEdD '//achar(9)//achar(13)) == 0
+      only_numbers = verify(trim(g%text), '0123456789+-.eEdD '//achar(9)//achar(13)) == 0
    end function only_numbers
 
    !> A number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so that
    !> a damaged number cannot ask for all memory.
-   subroutine check_announced(reader, what, number, fault)
-      type(reader_t), intent(in) :: reader
+   subroutine check_announced(g, what, number)
+      type(reader_t), intent(inout) :: g
       character(*), intent(in) :: what
       integer, intent(in) :: number
-      type(fault_t), intent(inout) :: fault
 
-      if (number < 0 .or. number > reader%bytes) call wrong(reader, what//' is '//whole(number)// &
-         ', allowed 0 to '//whole(reader%bytes)//', the bytes of the file', fault)
+      if (number < 0 .or. number > g%bytes) call wrong(g, what//' is '//whole(number)//', allowed 0 to '// &
+                                                       whole(g%bytes)//', the bytes of the file')
    end subroutine check_announced
 
-   subroutine read_format(reader, fault)
-      type(reader_t), intent(inout) :: reader
-      type(fault_t), intent(inout) :: fault
+   subroutine read_format(g)
+      type(reader_t), intent(inout) :: g
       real(wp) :: version
       integer :: kind, status
 
-      call next(reader, fault)
-      read (reader%text, *, iostat=status) version, kind
+      call next(g)
+      read (g%text, *, iostat=status) version, kind
       if (status /= 0) then
-         call wrong(reader, 'the format cannot be read', fault)
+         call wrong(g, 'the format cannot be read')
       else if (abs(version - 4.1_wp) > 1.0e-6_wp .or. kind /= 0) then
-         call wrong(reader, 'only text files of version 4.1 are understood', fault)
+         call wrong(g, 'only text files of version 4.1 are understood')
       end if
    end subroutine read_format
 
-   subroutine read_names(reader, names, fault)
-      type(reader_t), intent(inout) :: reader
-      type(physical_t), allocatable, intent(inout) :: names(:)
-      type(fault_t), intent(inout) :: fault
+   subroutine read_names(g)
+      type(reader_t), intent(inout) :: g
       type(physical_t) :: one
       integer :: head(1), i, status
 
-      call integers(reader, head, fault)
+      call integers(g, head)
       do i = 1, head(1)
-         call next(reader, fault)
-         if (fault%code /= 0) return
-         read (reader%text, *, iostat=status) one%dimension, one%tag, one%name
-         if (status /= 0) call wrong(reader, 'expected dimension, tag and "name"', fault)
-         names = [names, one]
+         call next(g)
+         read (g%text, *, iostat=status) one%dimension, one%tag, one%name
+         if (status /= 0) call wrong(g, 'expected dimension, tag and "name"')
+         if (g%fault%code /= 0) return
+         g%names = [g%names, one]
       end do
    end subroutine read_names
 
-   subroutine read_entities(reader, entities, fault)
-      type(reader_t), intent(inout) :: reader
-      type(entity_t), allocatable, intent(inout) :: entities(:)
-      type(fault_t), intent(inout) :: fault
-      type(entity_t) :: one
+   !> Lists the entities that belong to physical groups.
+   subroutine read_entities(g)
+      type(reader_t), intent(inout) :: g
+      integer, allocatable :: physical(:)
       real(wp) :: box(6)
-      integer :: counts(4), dimension, i, skip, tags, status
+      integer :: counts(4), dimension, entity, i, k, skip, tags, status
 
-      call integers(reader, counts, fault)
+      call integers(g, counts)
       do dimension = 0, 3
          skip = merge(3, 6, dimension == 0)
          do i = 1, counts(dimension + 1)
-            call next(reader, fault)
-            if (fault%code /= 0) return
-            one%dimension = dimension
+            call next(g)
             status = 1
-            if (only_numbers(reader)) read (reader%text, *, iostat=status) one%tag, box(:skip), tags
-            if (status == 0) call check_announced(reader, 'the number of physical groups of an entity', tags, fault)
-            if (fault%code /= 0) return
+            if (only_numbers(g)) read (g%text, *, iostat=status) entity, box(:skip), tags
+            if (status == 0) call check_announced(g, 'the number of physical groups of an entity', tags)
+            if (g%fault%code /= 0) return
             if (status == 0) then
-               if (allocated(one%physical)) deallocate (one%physical)
-               allocate (one%physical(tags))
-               read (reader%text, *, iostat=status) one%tag, box(:skip), tags, one%physical
+               physical = spread(0, 1, tags)
+               read (g%text, *, iostat=status) entity, box(:skip), tags, physical
             end if
-            if (status /= 0) call wrong(reader, 'an entity cannot be read', fault)
-            entities = [entities, one]
+            if (status /= 0) call wrong(g, 'an entity cannot be read')
+            if (status /= 0) return
+            g%members = [g%members, (physical_t(dimension, abs(physical(k)), entity), k=1, tags)]
          end do
       end do
    end subroutine read_entities
 
-   subroutine read_nodes(reader, xyz, number_of, fault)
-      type(reader_t), intent(inout) :: reader
-      real(wp), allocatable, intent(inout) :: xyz(:, :)   !< (3, nodes) [m]
-      integer, allocatable, intent(inout) :: number_of(:)   !< Tag to number.
-      type(fault_t), intent(inout) :: fault
+   subroutine read_nodes(g)
+      type(reader_t), intent(inout) :: g
       integer :: head(4), block_head(4), b, i, used, status
       integer, allocatable :: tags(:)
 
-      call integers(reader, head, fault)
-      call check_announced(reader, 'the number of nodes', head(2), fault)
-      call check_announced(reader, 'the largest node tag', head(4), fault)
-      if (allocated(xyz)) call wrong(reader, 'there is a second section $Nodes', fault)
-      if (fault%code /= 0) return
-      allocate (xyz(3, head(2)), source=0.0_wp)
-      deallocate (number_of)
-      allocate (number_of(head(4)), source=0)
+      call integers(g, head)
+      call check_announced(g, 'the number of nodes', head(2))
+      call check_announced(g, 'the largest node tag', head(4))
+      if (allocated(g%xyz)) call wrong(g, 'there is a second section $Nodes')
+      if (g%fault%code /= 0) return
+      allocate (g%xyz(3, head(2)), source=0.0_wp)
+      g%number_of = spread(0, 1, head(4))
       used = 0
       do b = 1, head(1)
-         call integers(reader, block_head, fault)
-         if (fault%code == 0 .and. (block_head(4) < 0 .or. block_head(4) > head(2) - used)) &
-            call wrong(reader, 'more nodes than announced', fault)
-         if (fault%code /= 0) return
-         if (allocated(tags)) deallocate (tags)
-         allocate (tags(block_head(4)))
+         call integers(g, block_head)
+         if (block_head(4) < 0 .or. block_head(4) > head(2) - used) call wrong(g, 'more nodes than announced')
+         if (g%fault%code /= 0) return
+         tags = spread(0, 1, block_head(4))
          do i = 1, size(tags)
-            call integers(reader, tags(i:i), fault)
-            if (fault%code == 0 .and. (tags(i) < 1 .or. tags(i) > head(4))) &
-               call wrong(reader, 'a node tag is outside the announced range', fault)
+            call integers(g, tags(i:i))
+            if (tags(i) < 1 .or. tags(i) > head(4)) call wrong(g, 'a node tag is outside the announced range')
+            if (g%fault%code /= 0) return
          end do
-         if (fault%code /= 0) return
          do i = 1, size(tags)
-            call next(reader, fault)
-            if (fault%code /= 0) return
+            call next(g)
             used = used + 1
-            if (number_of(tags(i)) /= 0) call wrong(reader, 'node '//whole(tags(i))//' comes twice', fault)
-            number_of(tags(i)) = used
+            if (g%number_of(tags(i)) /= 0) call wrong(g, 'node '//whole(tags(i))//' comes twice')
+            g%number_of(tags(i)) = used
             status = 1
-            if (only_numbers(reader)) read (reader%text, *, iostat=status) xyz(:, used)
-            if (status /= 0 .or. .not. all(abs(xyz(:, used)) <= FARTHEST)) &
-               call wrong(reader, 'expected coordinates of at most '//short(FARTHEST)//' m', fault)
+            if (only_numbers(g)) read (g%text, *, iostat=status) g%xyz(:, used)
+            if (status /= 0 .or. .not. all(abs(g%xyz(:, used)) <= FARTHEST)) &
+               call wrong(g, 'expected coordinates of at most '//short(FARTHEST)//' m')
+            if (g%fault%code /= 0) return
          end do
       end do
-      if (used /= head(2)) call wrong(reader, 'fewer nodes than announced', fault)
+      if (used /= head(2)) call wrong(g, 'fewer nodes than announced')
    end subroutine read_nodes
 
-   subroutine read_elements(reader, number_of, blocks, fault)
-      type(reader_t), intent(inout) :: reader
-      integer, intent(in) :: number_of(:)
-      type(block_t), allocatable, intent(inout) :: blocks(:)
-      type(fault_t), intent(inout) :: fault
+   subroutine read_elements(g)
+      type(reader_t), intent(inout) :: g
       type(block_t) :: one
-      integer :: head(4), block_head(4), b, i, n, used
-      integer :: row(7)
+      integer :: head(4), block_head(4), row(7), b, i, n, used
 
-      call integers(reader, head, fault)
-      call check_announced(reader, 'the number of elements', head(2), fault)
+      call integers(g, head)
+      call check_announced(g, 'the number of elements', head(2))
       used = 0
       do b = 1, head(1)
-         call integers(reader, block_head, fault)
-         if (fault%code == 0 .and. (block_head(4) < 0 .or. block_head(4) > head(2) - used)) &
-            call wrong(reader, 'more elements than announced', fault)
-         if (fault%code /= 0) return
+         call integers(g, block_head)
+         if (block_head(4) < 0 .or. block_head(4) > head(2) - used) call wrong(g, 'more elements than announced')
+         if (any(QUADRILATERALS == block_head(3))) call wrong(g, 'the mesh has quadrilaterals', &
+            'mesh it without Recombine and Mesh.RecombineAll, or call setOrder(1), splitQuadrangles(), setOrder(2) '// &
+            'of gmsh.model.mesh in Python and write it')
+         i = findloc(KINDS, block_head(3), dim=1)
+         if (i == 0) call wrong(g, 'elements of type '//whole(block_head(3))//' cannot be used: 6-node triangles '// &
+                                'and 3-node edges are')
+         if (g%fault%code /= 0) return
+         n = NODES_OF(i)
          used = used + block_head(4)
-         select case (block_head(3))
-         case (POINT)
-            n = 1
-         case (LINE3)
-            n = 3
-         case (TRIANGLE6)
-            n = 6
-         case default
-            if (any(QUADRILATERALS == block_head(3))) call wrong(reader, 'the mesh has quadrilaterals', fault, &
-               'mesh it without Recombine and Mesh.RecombineAll, or call setOrder(1), splitQuadrangles(), '// &
-               'setOrder(2) of gmsh.model.mesh in Python and write it')
-            call wrong(reader, 'elements of type '//whole(block_head(3))//' cannot be used: 6-node triangles and '// &
-                       '3-node edges are', fault)
-            return
-         end select
-         one%dimension = block_head(1)
-         one%entity = block_head(2)
-         one%kind = block_head(3)
-         if (allocated(one%nodes)) deallocate (one%nodes)
-         allocate (one%nodes(n, block_head(4)))
+         one = block_t(block_head(1), block_head(2), block_head(3), reshape([integer ::], [n, block_head(4)], [0]))
          do i = 1, block_head(4)
-            call integers(reader, row(:n + 1), fault)
-            if (fault%code /= 0) return
-            if (any(row(2:n + 1) < 1 .or. row(2:n + 1) > size(number_of))) then
-               call wrong(reader, 'an element refers to a node that does not exist', fault)
-               return
+            call integers(g, row(:n + 1))
+            if (any(row(2:n + 1) < 1 .or. row(2:n + 1) > size(g%number_of))) then
+               call wrong(g, 'an element refers to a node that does not exist')
+            else
+               one%nodes(:, i) = g%number_of(row(2:n + 1))
+               if (any(one%nodes(:, i) == 0)) call wrong(g, 'an element refers to a node that does not exist')
             end if
-            one%nodes(:, i) = number_of(row(2:n + 1))
-            if (any(one%nodes(:, i) == 0)) call wrong(reader, 'an element refers to a node that does not exist', fault)
+            if (g%fault%code /= 0) return
          end do
-         blocks = [blocks, one]
+         g%blocks = [g%blocks, one]
       end do
-      if (used /= head(2)) call wrong(reader, 'fewer elements than announced', fault)
-      call next(reader, fault)
-      if (fault%code == 0 .and. reader%text /= '$EndElements') &
-         call wrong(reader, 'expected $EndElements after the last element', fault)
+      if (used /= head(2)) call wrong(g, 'fewer elements than announced')
+      call next(g)
+      if (g%text /= '$EndElements') call wrong(g, 'expected $EndElements after the last element')
    end subroutine read_elements
 
-   !> Collects triangles, turns clockwise ones, and makes a group of every physical name.
-   subroutine collect_elements(reader, names, entities, blocks, mesh, fault)
-      type(reader_t), intent(in) :: reader
-      type(physical_t), intent(in) :: names(:)
-      type(entity_t), intent(in) :: entities(:)
-      type(block_t), intent(in) :: blocks(:)
+   !> Collects triangles, turns clockwise ones, and makes a group of every physical name; groups that the file gives no
+   !> name are named by their dimension and number.
+   subroutine collect_elements(g, mesh)
+      type(reader_t), intent(inout) :: g
       type(mesh_t), intent(inout) :: mesh
-      type(fault_t), intent(inout) :: fault
-      integer, allocatable :: first(:), elements(:), edges(:, :), nodes(:)
-      integer :: b, i, k, total
+      character(7), parameter :: WORDS(0:3) = ['point  ', 'curve  ', 'surface', 'volume ']
+      integer, allocatable :: elements(:), edges(:, :), nodes(:), t6(:, :)
+      integer :: first(size(g%blocks)), b, i, k
 
-      total = 0
-      allocate (first(size(blocks)), source=0)
-      do b = 1, size(blocks)
-         if (blocks(b)%kind /= TRIANGLE6) cycle
-         first(b) = total + 1
-         total = total + size(blocks(b)%nodes, 2)
+      allocate (t6(6, 0))
+      do b = 1, size(g%blocks)
+         first(b) = size(t6, 2)
+         if (g%blocks(b)%kind == TRIANGLE6) t6 = reshape([t6, g%blocks(b)%nodes], [6, first(b) + &
+                                                                                  size(g%blocks(b)%nodes, 2)])
       end do
-      if (total == 0) then
-         call wrong(reader, 'the mesh has no 6-node triangles', fault)
+      if (size(t6, 2) == 0) then
+         call wrong(g, 'the mesh has no 6-node triangles')
          return
       end if
-      allocate (mesh%t6(6, total))
-      do b = 1, size(blocks)
-         do i = 1, size(blocks(b)%nodes, 2)
-            if (blocks(b)%kind == TRIANGLE6) &
-               mesh%t6(:, first(b) + i - 1) = counter_clockwise(mesh, blocks(b)%nodes(:, i))
-         end do
+      do i = 1, size(t6, 2)
+         t6(:, i) = counter_clockwise(mesh, t6(:, i))
       end do
-      allocate (edges(3, 0))
-      call add_group(mesh, 'all', [(i, i=1, total)], edges, [integer ::])
-      do k = 1, size(names)
-         ! Those of one name and dimension are one group.
-         if (any(names(:k - 1)%name == names(k)%name .and. names(:k - 1)%dimension == names(k)%dimension)) cycle
-         elements = [integer ::]
-         nodes = [integer ::]
-         edges = reshape([integer ::], [3, 0])
-         do b = 1, size(blocks)
-            if (.not. has_tag(blocks(b), names(k))) cycle
-            select case (blocks(b)%kind)
-            case (TRIANGLE6)
-               elements = [elements, [(first(b) + i - 1, i=1, size(blocks(b)%nodes, 2))]]
-            case (LINE3)
-               edges = reshape([edges, blocks(b)%nodes], [3, size(edges, 2) + size(blocks(b)%nodes, 2)])
-            case default
-               nodes = [nodes, blocks(b)%nodes(1, :)]
-            end select
-         end do
-         call orient(mesh, edges)
-         if (names(k)%name /= 'all') then
-            call add_group(mesh, trim(names(k)%name), elements, edges, nodes)
-         else if (size(elements) < total) then
-            call raise(fault, EXIT_MESH, trim(reader%file)//': a physical group is called ''all'' and has not all '// &
-                       'triangles, which is what a scene calls so; give it another name.')
-            return
-         end if
+      mesh%t6 = t6
+      call add_group(mesh, 'all', [(i, i=1, size(t6, 2))], reshape([integer ::], [3, 0]), [integer ::])
+      do i = 1, size(g%members)
+         associate (one => g%members(i))
+            if (any(g%names%dimension == one%dimension .and. g%names%tag == one%tag)) cycle
+            g%names = [g%names, physical_t(one%dimension, one%tag, 0, trim(WORDS(one%dimension))//'_'//whole(one%tag))]
+         end associate
+      end do
+      do k = 1, size(g%names)
+         associate (name => g%names(k))
+            ! Those of one name and dimension are one group.
+            if (any(same(g%names(:k - 1), name))) cycle
+            elements = [integer ::]
+            nodes = [integer ::]
+            edges = reshape([integer ::], [3, 0])
+            do b = 1, size(g%blocks)
+               if (.not. belongs(g%blocks(b), pack(g%names%tag, same(g%names, name)), name%dimension)) cycle
+               associate (of_block => g%blocks(b)%nodes)
+                  select case (g%blocks(b)%kind)
+                  case (TRIANGLE6)
+                     elements = [elements, [(first(b) + i, i=1, size(of_block, 2))]]
+                  case (LINE3)
+                     edges = reshape([edges, of_block], [3, size(edges, 2) + size(of_block, 2)])
+                  case default
+                     nodes = [nodes, of_block(1, :)]
+                  end select
+               end associate
+            end do
+            call orient(mesh, edges)
+            if (name%name /= 'all') then
+               call add_group(mesh, trim(name%name), elements, edges, nodes)
+            else if (size(elements) < size(t6, 2)) then
+               call raise(g%fault, EXIT_MESH, trim(g%file)//': a physical group is called ''all'' and has not all '// &
+                          'triangles, which is what a scene calls so; give it another name.')
+               return
+            end if
+         end associate
       end do
    contains
-      pure logical function has_tag(one, name)
-         type(block_t), intent(in) :: one
-         type(physical_t), intent(in) :: name
-         integer :: e, n
+      elemental logical function same(a, b)
+         type(physical_t), intent(in) :: a, b
 
-         has_tag = .false.
-         if (one%dimension /= name%dimension) return
-         do e = 1, size(entities)
-            if (entities(e)%dimension == one%dimension .and. entities(e)%tag == one%entity) &
-               has_tag = any([(any(abs(entities(e)%physical) == names(n)%tag .and. names(n)%name == name%name .and. &
-                                   names(n)%dimension == name%dimension), n=1, size(names))])
-         end do
-      end function has_tag
+         same = a%name == b%name .and. a%dimension == b%dimension
+      end function same
+
+      !> Whether the entity of a block is a member of a group with one of these tags.
+      pure logical function belongs(one, tags, dimension)
+         type(block_t), intent(in) :: one
+         integer, intent(in) :: tags(:), dimension
+         integer :: m
+
+         belongs = one%dimension == dimension .and. &
+                   any([(g%members(m)%dimension == dimension .and. g%members(m)%entity == one%entity .and. &
+                         any(tags == g%members(m)%tag), m=1, size(g%members))])
+      end function belongs
    end subroutine collect_elements
 
    pure function counter_clockwise(mesh, nodes) result(turned)

@@ -54,10 +54,7 @@ contains
       group%elements = elements
       group%edges = edges
       group%nodes = pack([(i, i=1, size(member))], member)
-      if (allocated(mesh%groups)) then
-         mesh%groups = [mesh%groups, group]
-      else
-         mesh%groups = [group]
-      end if
+      if (.not. allocated(mesh%groups)) allocate (mesh%groups(0))
+      mesh%groups = [mesh%groups, group]
    end subroutine add_group
 end module triangle_mesh

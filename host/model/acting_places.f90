@@ -4,13 +4,15 @@
 module acting_places
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
+   use kinds, only: wp
    use generalised_alpha, only: has_inertia
    use model_types, only: model_t, action_t
    use scene_parts, only: acts_in, place_of, NAME_LENGTH
-   use texts, only: short
+   use texts, only: short, whole
+   use triangle_mesh, only: group_of_t
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, nodes_of_ground, check_sides, check_ground
+   public :: facing_edges, acting_stages, nodes_of_ground, check_actions
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -49,13 +51,9 @@ contains
       type(model_t), intent(in) :: model
       type(action_t), intent(in) :: action
       character(NAME_LENGTH), allocatable :: names(:)
-      logical :: wanted(size(model%stages))
       integer :: s
 
-      wanted = [((has_inertia(model%stages(s)%kind) .or. .not. action%damps) .and. &
-                 acts_in(action%stages, model%stages(s)%name), s=1, size(wanted))]
-      allocate (names(count(wanted)))
-      names = pack(model%stages%name, wanted)
+      allocate (names, source=pack(model%stages%name, [(acts_truly(model, action, s), s=1, size(model%stages))]))
    end function acting_stages
 
    !> On which sides of the edges of a group a stage has ground. (edges)
@@ -94,80 +92,87 @@ contains
       end associate
    end function sides_with_ground
 
-   !> What acts along the normal of an edge needs ground on one side of it alone, and on the same one whenever it acts.
-   !> Fault EXIT_GROUP: it acts where ground lies on both sides, on none, or changes.
-   subroutine check_sides(model, fault)
+   !> Refuses what acts where it cannot: on nodes of no element, in a stage that lacks its ground, or along the normal
+   !> of an edge that has ground on both sides, on none, or on another side than in a stage before. Fault EXIT_GROUP.
+   subroutine check_actions(model, fault)
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault
+      logical :: carried(size(model%domain%mesh%x, 2))
       integer :: i
 
+      carried = .false.
+      carried(reshape(model%domain%mesh%t6, [size(model%domain%mesh%t6)])) = .true.
+      carried(model%domain%bodies) = .true.
       do i = 1, size(model%actions)
-         if (model%actions(i)%along_normal) call look(model%actions(i), acting_stages(model, model%actions(i)))
+         if (model%actions(i)%group > 0 .and. fault%code == 0) call look(model%actions(i), &
+            model%domain%mesh%groups(model%actions(i)%group), model%domain%mesh%x)
       end do
    contains
-      subroutine look(item, stages)
+      subroutine look(item, group, x)
          type(action_t), intent(in) :: item
-         character(*), intent(in) :: stages(:)
-         character(*), parameter :: WORDS(0:3) = [character(44) :: 'has no ground on either side', '', '', &
-                                                  'has ground on both sides, and so no outside']
-         character(:), allocatable :: wrong, remedy
-         integer, dimension(size(model%domain%mesh%groups(item%group)%edges, 2)) :: sides, before
+         type(group_of_t), intent(in) :: group
+         real(wp), intent(in) :: x(:, :)   !< [m]
+         logical :: there(size(carried))
+         character(:), allocatable :: wrong
+         integer, dimension(size(group%edges, 2)) :: sides, before
          integer :: s, first, k
 
-         if (fault%code /= 0) return
-         if (size(stages) == 0) return
-         first = 0
-         k = 0
-         do s = 1, size(model%stages)
-            if (.not. acts_in(stages, model%stages(s)%name)) cycle
-            sides = sides_with_ground(model, item%group, s)
-            if (first == 0) before = sides
-            k = findloc((sides /= ON_LEFT .and. sides /= ON_RIGHT) .or. sides /= before, .true., dim=1)
-            if (k > 0) exit
-            if (first == 0) first = s
-         end do
-         if (k == 0) return
-         if (any(sides(k) == [ON_LEFT, ON_RIGHT])) then
-            wrong = 'has its ground on the other side than in stage '''//trim(model%stages(first)%name)//''''
-            remedy = 'give one '//trim(item%what)//' for each of the stages.'
-         else
-            wrong = trim(WORDS(sides(k)))
-            remedy = 'name the stages in which the ground lies on one side alone (stages of '//trim(item%what)// &
-                     ' and of &region), or a group on the outside of the ground.'
+         if (.not. (all(carried(group%nodes)) .or. (item%supports .and. any(carried(group%nodes))))) then
+            k = group%nodes(findloc(carried(group%nodes), .false., dim=1))
+            call raise(fault, EXIT_GROUP, place_of(item)//whole(count(.not. carried(group%nodes)))//' of the '// &
+                       whole(size(group%nodes))//' nodes of group '''//trim(group%name)//''' belong to no '// &
+                       'element, the first at ('//short(x(1, k))//', '//short(x(2, k))//') m: nothing acts there; '// &
+                       'embed the point or curve in its surface in Gmsh, or name another group.')
+            return
          end if
-         associate (mesh => model%domain%mesh)
-            associate (x => mesh%x(:, mesh%groups(item%group)%edges(3, k)))
-               call raise(fault, EXIT_GROUP, place_of(item)//'this '//trim(item%what)//' acts in stage '''// &
-                          trim(model%stages(s)%name)//''' on group '''//trim(mesh%groups(item%group)%name)// &
-                          ''', whose edge at ('//short(x(1))//', '//short(x(2))//') m '//wrong//' then; '//remedy)
-            end associate
-         end associate
-      end subroutine look
-   end subroutine check_sides
-
-   !> Fault EXIT_GROUP: something acts in a stage on nodes that no present element has.
-   subroutine check_ground(model, fault)
-      type(model_t), intent(in) :: model
-      type(fault_t), intent(inout) :: fault
-      logical :: there(size(model%domain%mesh%x, 2))
-      integer :: s, i
-
-      if (.not. allocated(model%ground)) return
-      do s = 1, size(model%stages)
-         there = nodes_of_ground(model, s)
-         do i = 1, size(model%actions)
-            associate (item => model%actions(i), stage => model%stages(s)%name)
-               if (fault%code /= 0 .or. item%group == 0 .or. item%supports) cycle
-               if (.not. acts_in(item%stages, stage)) cycle
-               associate (group => model%domain%mesh%groups(item%group))
-                  if (.not. all(there(group%nodes))) call raise(fault, EXIT_GROUP, place_of(item)//'this '// &
-                     trim(item%what)//' acts in stage '''//trim(stage)//''' on group '''//trim(group%name)// &
-                     ''', part of which is no ground then (stages of &region); name the stages in which it acts.')
-               end associate
-            end associate
+         first = 0
+         do s = 1, size(model%stages)
+            if (.not. acts_in(item%stages, model%stages(s)%name)) cycle
+            wrong = ''
+            there = nodes_of_ground(model, s)
+            if (allocated(model%ground) .and. .not. item%supports .and. .not. all(there(group%nodes))) then
+               wrong = ', part of which is no ground then (stages of &region); name the stages in which it acts.'
+            else if (item%along_normal .and. acts_truly(model, item, s)) then
+               sides = sides_with_ground(model, item%group, s)
+               if (first == 0) before = sides
+               k = findloc((sides /= ON_LEFT .and. sides /= ON_RIGHT) .or. sides /= before, .true., dim=1)
+               if (k > 0) wrong = ', whose edge at ('//short(x(1, group%edges(3, k)))//', '// &
+                                  short(x(2, group%edges(3, k)))//') m '//misplaced(item, sides(k), first)
+               if (first == 0) first = s
+            end if
+            if (wrong == '') cycle
+            call raise(fault, EXIT_GROUP, place_of(item)//'this '//trim(item%what)//' acts in stage '''// &
+                       trim(model%stages(s)%name)//''' on group '''//trim(group%name)//''''//wrong)
+            return
          end do
-      end do
-   end subroutine check_ground
+      end subroutine look
+
+      function misplaced(item, side, first) result(text)
+         type(action_t), intent(in) :: item
+         integer, intent(in) :: side, first   !< Side of the ground; first stage in which it acts.
+         character(:), allocatable :: text
+
+         if (any(side == [ON_LEFT, ON_RIGHT])) then
+            text = 'has its ground on the other side than in stage '''//trim(model%stages(first)%name)// &
+                   ''' then; give one '//trim(item%what)//' for each of the stages.'
+            return
+         end if
+         text = 'has no ground on either side'
+         if (side == ON_BOTH) text = 'has ground on both sides, and so no outside'
+         text = text//' then; name the stages in which the ground lies on one side alone (stages of '// &
+                trim(item%what)//' and of &region), or a group on the outside of the ground.'
+      end function misplaced
+   end subroutine check_actions
+
+   !> Whether something acts in a stage: dashpots do in dynamic ones alone.
+   pure logical function acts_truly(model, action, number)
+      type(model_t), intent(in) :: model
+      type(action_t), intent(in) :: action
+      integer, intent(in) :: number   !< Of the stage.
+
+      acts_truly = (has_inertia(model%stages(number)%kind) .or. .not. action%damps) .and. &
+                   acts_in(action%stages, model%stages(number)%name)
+   end function acts_truly
 
    !> Nodes of elements that a stage has, and of plates.
    pure function nodes_of_ground(model, number) result(there)

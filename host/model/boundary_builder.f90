@@ -11,18 +11,17 @@ module boundary_builder
                           contact_pair_t, tie_t
    use name_search, only: mesh_group, history_named
    use scene_parts, only: acts_in, place_of, LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, &
-                          LOAD_FORCE_Z, LOAD_OF_BODY, PRESCRIBED_OF_BODY
+                          LOAD_FORCE_Z, LOAD_OF_BODY, PRESCRIBED_WORDS, PRESCRIBED_OF_BODY
    use scene_types, only: item_of
    use texts, only: short, whole, LENGTH
    use triangle_mesh, only: find_group, add_group
-   use unknown_fields, only: FIELD_NAMES, AT_U_Z, AT_P_W, AT_P_C
+   use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: build_plate, build_initial, build_fix, build_load, build_contact, build_tie, add_body
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    character(*), parameter :: STAGES = 'names of stages; default: all'
-   character(3), parameter :: WORD_OF(*) = [FIELD_NAMES, 'p_a']
 contains
    !> &plate, before what acts on it: one with a face of its own becomes a node of the mesh, and each becomes a group of
    !> it. docs/theory/host.md section 7.3. Fault EXIT_INPUT: keys that contradict each other. EXIT_GROUP: the name is
@@ -35,7 +34,7 @@ contains
       character(LENGTH) :: joined_name, history
       real(wp), allocatable :: r(:), outline(:)
       real(wp) :: z
-      logical :: up
+      logical :: up, good
       integer :: none(3, 0)
 
       joined_name = ''
@@ -64,14 +63,13 @@ contains
                     'plane also outline), or it is joined to a boundary, group = name: give one of the two.')
       else if (k%given('outline') .and. (size(outline) < 4 .or. mod(size(outline), 2) == 1)) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'outline = r, z, r, z, ... are two corners or more.')
-      else if (k%given('r') .and. size(r) /= 2) then
-         call raise(fault, EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending.')
       else if (k%given('r')) then
-         plate%corners = reshape([r(1), z, r(2), z], [2, 2])
-         if (up) plate%corners = plate%corners(:, [2, 1])
-         if (.not. r(2) > r(1) .or. (model%domain%axisymmetric .and. r(1) < ZERO)) call raise(fault, &
-            EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending and, in axial symmetry, not '// &
-            'negative.')
+         if (size(r) == 2) plate%corners = reshape([r(1), z, r(2), z], [2, 2])
+         good = allocated(plate%corners)
+         if (good) good = r(2) > r(1) .and. .not. (model%domain%axisymmetric .and. r(1) < ZERO)
+         if (good .and. up) plate%corners = plate%corners(:, [2, 1])
+         if (.not. good) call raise(fault, EXIT_INPUT, place_of(plate)//'a plate needs r = begin, end, ascending '// &
+                                    'and, in axial symmetry, not negative.')
       else if (k%given('outline')) then
          plate%corners = reshape(outline, [2, size(outline)/2])
       end if
@@ -106,21 +104,19 @@ contains
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate
       type(fault_t), intent(inout) :: fault
-      integer :: i, k
+      integer :: i, k, n
 
       if (plate%group == 0) return
       do i = 1, size(model%plates)
          if (model%plates(i)%group == 0) cycle
-         associate (other => model%domain%mesh%groups(model%plates(i)%group), &
+         associate (other => model%domain%mesh%groups(model%plates(i)%group)%nodes, &
                     own => model%domain%mesh%groups(plate%group))
-            do k = 1, size(own%nodes)
-               if (.not. any(other%nodes == own%nodes(k))) cycle
-               call raise(fault, EXIT_GROUP, place_of(plate)//'its boundary '''//trim(own%name)// &
-                          ''' shares node '//whole(own%nodes(k))//' with that of the plate '''// &
-                          trim(model%plates(i)%name)//''': they would be one body; give one plate, on a group '// &
-                          'that has both.')
-               return
-            end do
+            k = findloc([(any(other == own%nodes(n)), n=1, size(own%nodes))], .true., dim=1)
+            if (k == 0) cycle
+            call raise(fault, EXIT_GROUP, place_of(plate)//'its boundary '''//trim(own%name)//''' shares node '// &
+                       whole(own%nodes(k))//' with that of the plate '''//trim(model%plates(i)%name)//''': they '// &
+                       'would be one body; give one plate, on a group that has both.')
+            return
          end associate
       end do
    end subroutine check_apart
@@ -164,9 +160,9 @@ contains
                     'S_w between the main curves, with hysteresis [-]; default: on the main drying curve', ':p_c')
       call k%number('datum', initial%datum, -BIG, BIG, 'z of the datum [m]', &
                     '+p_w_slope|p_c_slope|wave')
-      call k%number('v_z', initial%v_z, -BIG, BIG, 'vertical velocity at the start [m/s]')
+      call k%number('v_z', initial%v_z, -BIG, BIG, 'vertical velocity at the start [m/s]', ':moving')
       call k%number('wave', initial%wave, -BIG, BIG, 'v_z = wave sin(wave_number (z - datum)) at the start [m/s]', &
-                    '+wave_number')
+                    '+wave_number :moving')
       call k%number('wave_number', initial%wave_number, ZERO, BIG, 'see wave [1/m]', '+wave')
       stress = 1
       call k%word('stress', stress, 'none|uniform|geostatic', 'effective stress at the start')
@@ -239,7 +235,7 @@ contains
                     'u_z), a history, and not hold = ''yes''.')
       else if ((fix%field == AT_P_W .and. .not. model%domain%with_w) .or. &
                (fix%field >= AT_P_C .and. .not. model%domain%with_c)) then
-         call raise(fault, EXIT_INPUT, place_of(fix)//'the scene has no field '//WORD_OF(fix%field)// &
+         call raise(fault, EXIT_INPUT, place_of(fix)//'the scene has no field '//PRESCRIBED_WORDS(fix%field)// &
                     '; see fields in &scene.')
       end if
       fix%what = '&fix'

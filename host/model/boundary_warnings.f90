@@ -2,21 +2,21 @@
 !> Warnings about supports, loads and histories of a scene that are allowed but usually mistakes.
 module boundary_warnings
    use kinds, only: wp
-   use generalised_alpha, only: has_rates
+   use generalised_alpha, only: has_rates, has_inertia
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
-   use model_types, only: model_t, action_t, acting_t, fix_t
-   use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A
+   use model_types, only: model_t, acting_t, fix_t
+   use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A, &
+                          PRESCRIBED_WORDS
    use texts, only: short, whole
-   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C, FIELD_NAMES
+   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: warn_of_boundaries
 
    real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Of a prescribed value.
    real(wp), parameter :: AT_ONCE = 1.0e-3_wp    !< Share of the range of a history that is no sudden load.
-
-   character(3), parameter :: WORDS(*) = [FIELD_NAMES, 'p_a']
+   real(wp), parameter :: BRIEF = 0.1_wp         !< Share of the time before a stage that a pulse lasts.
 contains
    !> Prints all of them.
    subroutine warn_of_boundaries(model)
@@ -51,7 +51,7 @@ contains
                                    any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
                                    node=1, size(nodes))], .true., dim=1)
                      if (n == 0) cycle before
-                     call print_warning(place_of(one)//WORDS(one%field)//' of the node at ('// &
+                     call print_warning(place_of(one)//PRESCRIBED_WORDS(one%field)//' of the node at ('// &
                         short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
                         ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
                         trim(model%fixes(j)%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
@@ -115,21 +115,17 @@ contains
       type(model_t), intent(in) :: model
       logical :: taken(size(model%domain%mesh%x, 2))
       integer :: e, i, s, lost
+      integer :: own   !< The pressure of the fluid: given itself, or by the other one and p_c.
 
       do i = 1, size(model%loads)
          associate (one => model%loads(i), edges => model%domain%mesh%groups(model%loads(i)%group)%edges)
             if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
+            own = merge(PRESCRIBED_P_A, AT_P_W, one%kind == LOAD_AIR)
             do s = 1, size(model%stages)
                if (.not. acts_in(one%stages, model%stages(s)%name)) cycle
-               if (one%kind /= LOAD_AIR) then
-                  taken = has_given(model, model%stages(s), AT_P_W)
-                  taken = taken .or. (has_given(model, model%stages(s), AT_P_C) .and. &
-                                      has_given(model, model%stages(s), PRESCRIBED_P_A))
-               else
-                  taken = has_given(model, model%stages(s), PRESCRIBED_P_A)
-                  taken = taken .or. (has_given(model, model%stages(s), AT_P_W) .and. &
-                                      has_given(model, model%stages(s), AT_P_C))
-               end if
+               taken = has_given(model, model%stages(s), own) .or. &
+                       (has_given(model, model%stages(s), AT_P_C) .and. &
+                        has_given(model, model%stages(s), AT_P_W + PRESCRIBED_P_A - own))
                lost = count([(all(taken(edges(:2, e))), e=1, size(edges, 2))])
                if (lost == 0) cycle
                call print_warning(place_of(one)//'the inflow has no effect on '//whole(lost)//' of the '// &
@@ -160,35 +156,42 @@ contains
       end do
    end function has_given
 
-   !> Histories of which a part lies before what they act on: times are those of the run, not of the stage.
+   !> Histories of which a part lies before what they act on, and short pulses that are over before the first dynamic
+   !> stage, though what follows them acts there: times are those of the run, not of the stage.
    subroutine look_at_histories(model)
       type(model_t), intent(in) :: model
-      integer :: i, s
+      character(*), parameter :: OF_RUN = ' times of a &history are those of the run, not of a stage: its key '// &
+                                          'stages counts them from stages.'
+      real(wp) :: starts(size(model%stages)), start, factor
+      logical :: acting(size(starts))
+      integer :: i, s, n, dynamic
 
+      starts = [(sum(model%stages(:s - 1)%duration), s=1, size(starts))]
+      dynamic = findloc(has_inertia(model%stages%kind), .true., dim=1)
       do i = 1, size(model%actions)
-         associate (one => model%actions(i))
-            s = findloc([(acts_in(one%stages, model%stages(s)%name), s=1, size(model%stages))], .true., dim=1)
-            call look(one, max(one%from, sum(model%stages(:s - 1)%duration)))
+         if (model%actions(i)%amplitude == 0) cycle
+         associate (one => model%actions(i), h => model%amplitudes(model%actions(i)%amplitude))
+            if (size(h%stages) > 0) cycle
+            acting = [(acts_in(one%stages, model%stages(s)%name), s=1, size(acting))]
+            start = max(one%from, starts(findloc(acting, .true., dim=1)))
+            factor = amplitude_at(h, start)
+            n = size(h%times)
+            if (any(h%times < start .and. &
+                    abs(h%values - factor) > AT_ONCE*(maxval(h%values) - minval(h%values)))) call print_warning( &
+               place_of(one)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))//' s, and this acts '// &
+               'from '//short(start)//' s on, at once with the factor '//short(factor)// &
+               trim(merge(', which then stays; ', ';                   ', h%times(n) <= start))//OF_RUN)
+            if (dynamic < 2) cycle
+            ! What acts from that stage on alone is told by its first factor.
+            if (.not. (acting(dynamic) .and. any(acting(:dynamic - 1)))) cycle
+            start = starts(dynamic)
+            if (h%times(n) <= start .and. h%times(n) - h%times(1) <= BRIEF*start .and. &
+                .not. abs(h%values(n) - h%values(1)) > 0.0_wp .and. any(abs(h%values - h%values(1)) > 0.0_wp)) &
+               call print_warning(place_of(one)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &
+                                  ' s, before stage '//trim(model%stages(dynamic)%name)//' begins at '// &
+                                  short(start)//' s;'//OF_RUN)
          end associate
       end do
-   contains
-      subroutine look(item, start)
-         type(action_t), intent(in) :: item
-         real(wp), intent(in) :: start   !< When it begins to act [s].
-         real(wp) :: factor
-
-         if (item%amplitude == 0) return
-         associate (h => model%amplitudes(item%amplitude))
-            if (size(h%stages) > 0) return
-            factor = amplitude_at(h, start)
-            if (.not. any(h%times < start .and. &
-                          abs(h%values - factor) > AT_ONCE*(maxval(h%values) - minval(h%values)))) return
-            call print_warning(place_of(item)//'history '''//trim(h%name)//''' begins at '//short(h%times(1))// &
-               ' s, and this acts from '//short(start)//' s on, at once with the factor '//short(factor)// &
-               trim(merge(', which then stays; ', ';                   ', h%times(size(h%times)) <= start))// &
-               ' times of a &history are those of the run, not of a stage: its key stages counts them from stages.')
-         end associate
-      end subroutine look
    end subroutine look_at_histories
 
    !> Supports of pressures and inflows that act on a part of their group alone, or in static stages alone.
@@ -201,9 +204,9 @@ contains
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
             if (one%field <= DISPLACEMENTS) cycle
-            call look_at_stages(one, WORDS(one%field))
+            call look_at_stages(one, PRESCRIBED_WORDS(one%field))
             if (.not. all(flows(nodes))) call print_warning(place_of(one)// &
-               trim(WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
+               trim(PRESCRIBED_WORDS(one%field))//' is prescribed on '//whole(count(flows(nodes)))//' of the '// &
                whole(size(nodes))//' nodes of '''//trim(one%group_name)//''': the others lie in no region with '// &
                'drainage = ''coupled''.')
          end associate

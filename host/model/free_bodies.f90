@@ -10,7 +10,8 @@ module free_bodies
    use load_shapes, only: ties_of
    use model_types, only: model_t
    use scene_parts, only: acts_in
-   use texts, only: short, whole
+   use texts, only: joined, short, whole
+   use triangle_mesh, only: NAME_LENGTH
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z
    implicit none (type, external)
    private
@@ -145,6 +146,8 @@ contains
       type(model_t), intent(in) :: model
       logical, intent(in) :: mine(:)   !< Its nodes.
       character(:), allocatable :: text
+      character(NAME_LENGTH), allocatable :: names(:)
+      logical, dimension(size(model%domain%mesh%groups)) :: within, boundary
       integer :: i, n
 
       do i = 1, size(model%plates)
@@ -152,19 +155,14 @@ contains
          if (mine(model%plates(i)%node) .and. model%plates(i)%group == 0) return
       end do
       text = ''
-      n = 0
-      associate (mesh => model%domain%mesh)
-         do i = 1, 2*size(mesh%groups)
-            associate (group => mesh%groups(mod(i - 1, size(mesh%groups)) + 1))
-               ! Boundaries first, then groups of elements.
-               if (size(group%edges, 2) > 0 .neqv. i <= size(mesh%groups)) cycle
-               if (size(group%nodes) == 0 .or. group%name == 'all' .or. n == MOST_NAMES) cycle
-               if (.not. all(mine(group%nodes))) cycle
-               text = text//trim(merge(', ', '  ', n > 0))//' '''//trim(group%name)//''''
-               n = n + 1
-            end associate
-         end do
-         if (n > 0) text = ' with the group'//trim(merge('s', ' ', n > 1))//text
+      associate (mesh => model%domain%mesh, groups => model%domain%mesh%groups)
+         within = [(groups(i)%name /= 'all' .and. size(groups(i)%nodes) > 0 .and. all(mine(groups(i)%nodes)), &
+                    i=1, size(groups))]
+         boundary = [(size(groups(i)%edges, 2) > 0, i=1, size(groups))]
+         allocate (names, source=[pack(groups%name, within .and. boundary), &
+                                  pack(groups%name, within .and. .not. boundary)])
+         n = min(MOST_NAMES, size(names))
+         if (n > 0) text = ' with the group'//trim(merge('s', ' ', n > 1))//' '''//joined(names(:n), ''', ''')//''''
          text = 'the body'//text//' ('//whole(count(mine))//' nodes from ('//short(minval(mesh%x(1, :), mask=mine))// &
                 ', '//short(minval(mesh%x(2, :), mask=mine))//') to ('//short(maxval(mesh%x(1, :), mask=mine))//', '// &
                 short(maxval(mesh%x(2, :), mask=mine))//') m)'

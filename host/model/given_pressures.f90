@@ -8,9 +8,9 @@ module given_pressures
    use faults, only: fault_t, raise
    use model_types, only: model_t, initial_t
    use porous_domain, only: domain_t, COUPLED, UNDRAINED, DRY
-   use scene_parts, only: place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR
+   use scene_parts, only: place_of, PRESCRIBED_WORDS, LOAD_WATER, LOAD_RAIN, LOAD_AIR
    use texts, only: whole
-   use unknown_fields, only: FIELD_NAMES, AT_P_C, DISPLACEMENTS
+   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
    public :: add_centers, pressures_at_start, check_places, nodes_with_flow, edges_with_flow
@@ -120,7 +120,7 @@ contains
                if (any(flows(domain%mesh%groups(fix%group)%nodes))) cycle
                call raise(fault, EXIT_GROUP, place_of(fix)//'no node of '''//trim(fix%group_name)//''' lies in a '// &
                           'region with drainage = ''coupled'', so that none has the unknown '// &
-                          trim(merge(FIELD_NAMES(min(fix%field, AT_P_C)), 'p_a', fix%field <= AT_P_C))// &
+                          trim(PRESCRIBED_WORDS(fix%field))// &
                           '; leave this &fix out (drained regions keep their initial pressures), or couple '// &
                           'the region.')
                return
@@ -150,5 +150,4 @@ contains
          end do
       end associate
    end subroutine check_places
-
 end module given_pressures

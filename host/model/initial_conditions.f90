@@ -36,14 +36,14 @@ contains
       type(model_t), intent(in) :: model
       type(model_state_t), intent(out) :: state
       type(fault_t), intent(inout) :: fault
-      type(tension_t), intent(out), optional :: tension
+      type(tension_t), intent(out) :: tension
       type(ground_t) :: ground
       type(saturation_t) :: sat
       character(600) :: text
       real(wp) :: p_c, pressures(2)
       integer :: e, g, p, i, n
 
-      if (present(tension)) allocate (tension%uses(size(model%domain%regions)))
+      allocate (tension%uses(size(model%domain%regions)))
       state = new_state_of(model%domain)
       state%gravity = gravity_at(model, state%time)
       if (allocated(model%ground)) then
@@ -83,7 +83,7 @@ contains
                      if (one%saturation > 0.0_wp) state%s(p) = one%saturation
                   end if
                   call set_stress(model, ground, e, gp%x, state%s(p), state%stress(:, p))
-                  if (present(tension)) call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
+                  call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
                end associate
                associate (own => state%state(model%domain%before_state(e) + (g - 1)*region%law%n_state + 1: &
                                              model%domain%before_state(e) + g*region%law%n_state))
@@ -94,7 +94,7 @@ contains
                   if (text == '') then
                      state%e(p) = region%law%void_ratio(own)
                      if (region%with_c) state%s(p) = region%law%saturation(own)
-                     if (present(tension)) call note_use(region%law, state%e(p), -sum(state%stress(1:3, p))/3, &
+                     call note_use(region%law, state%e(p), -sum(state%stress(1:3, p))/3, &
                                                          tension%uses(model%domain%region_of(e)))
                      cycle
                   end if
@@ -160,22 +160,20 @@ contains
       type(model_t), intent(in) :: model
       logical, intent(in) :: present(:)   !< (elements) In the first stage.
       type(ground_t) :: ground
-      integer :: i, k
+      integer :: i
 
       allocate (ground%initials(size(model%initials) + 1))
       ground%initials(:size(model%initials)) = model%initials
       allocate (ground%of(size(present)), source=size(ground%initials))
       do i = 1, size(model%initials)
          associate (elements => model%domain%mesh%groups(model%initials(i)%group)%elements)
-            do k = 1, size(elements)
-               ground%of(elements(k)) = i
-            end do
+            ground%of(elements) = i
          end associate
          ground%alike = ground%alike .and. .not. model%initials(i)%follows
       end do
+      ground%present = present
       ground%alike = ground%alike .and. all(present) .and. size(model%domain%regions) == 1 .and. &
                      all(ground%of == ground%of(1))
-      ground%present = present
       if (.not. ground%alike) ground%strips = new_strips(model%domain%mesh)
    end function ground_at_start
 

@@ -3,6 +3,7 @@
 module name_search
    use faults, only: fault_t, raise
    use exit_codes, only: EXIT_GROUP
+   use texts, only: joined
    use triangle_mesh, only: mesh_t, find_group
    implicit none (type, external)
    private
@@ -58,12 +59,8 @@ contains
    pure function listed(names) result(list)
       character(*), intent(in) :: names(:)
       character(:), allocatable :: list
-      integer :: i
 
-      list = ''
-      do i = 1, size(names)
-         list = list//' '//trim(names(i))
-      end do
-      if (list == '') list = ' nothing'
+      list = ' nothing'
+      if (size(names) > 0) list = ' '//joined(names, ' ')
    end function listed
 end module name_search

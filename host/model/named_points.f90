@@ -9,10 +9,10 @@ module named_points
    use model_types, only: point_t
    use shape_functions, only: quadratic, linear
    use texts, only: short
-   use unknown_fields, only: FIELDS, DISPLACEMENTS
+   use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: find_point, unknowns_at, motion_at
+   public :: find_point, values_at
 
    real(wp), parameter :: SAME_PLACE = 1.0e-9_wp   !< Share of the mesh: a point nearer to a node is there.
    real(wp), parameter :: EQUALLY_NEAR = 1.0e-6_wp !< Share of a distance that is rounding of coordinates.
@@ -20,6 +20,9 @@ module named_points
    !> A point outside the mesh by less than this share of an element takes the values that the element continues to: its
    !> coordinates may have been rounded, or stand for a side that is bent.
    real(wp), parameter :: ROUNDED = 0.05_wp
+   !> Local coordinates of the nodes of a triangle.
+   real(wp), parameter :: PLACES(2, 6) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.5_wp, 0.0_wp, &
+                                                  0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp], [2, 6])
    integer, parameter :: MOST_ITERATIONS = 20      !< For the local coordinates in an element with bent sides.
 contains
    !> Nodes, weights and nearest quadrature point of a point. Fault EXIT_GROUP: it lies outside the mesh.
@@ -40,7 +43,7 @@ contains
          most = -ROUNDED
          if (distance(node) <= SAME_PLACE*maxval(abs(mesh%x - spread(mesh%x(:, node), 2, size(mesh%x, 2))))) then
             e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
-            local = place_in_triangle(findloc(mesh%t6(:, e), node, dim=1))
+            local = PLACES(:, findloc(mesh%t6(:, e), node, dim=1))
          else
             do k = 1, size(mesh%t6, 2)
                call find_local(mesh%x(:, mesh%t6(:, k)), point%x, place, within)
@@ -71,16 +74,6 @@ contains
       end associate
    end subroutine find_point
 
-   !> Local coordinates of a node of a triangle.
-   pure function place_in_triangle(node) result(local)
-      integer, intent(in) :: node   !< 1 to 6
-      real(wp) :: local(2)
-      real(wp), parameter :: PLACES(2, 6) = reshape([0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.5_wp, 0.0_wp, &
-                                                     0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp], [2, 6])
-
-      local = PLACES(:, node)
-   end function place_in_triangle
-
    !> Local coordinates of a place, by Newton's method, and the least of its three area coordinates: negative outside.
    pure subroutine find_local(x, place, local, within)
       real(wp), intent(in) :: x(2, 6), place(2)   !< Nodes [m]; [m].
@@ -110,34 +103,20 @@ contains
       end do
    end subroutine find_local
 
-   !> The unknowns at a point [m, kPa].
-   pure function unknowns_at(point, x) result(values)
+   !> Values at a point of what the nodes have: of displacements or their rates, and of pressures, if there are any.
+   pure function values_at(point, x) result(values)
       type(point_t), intent(in) :: point
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
-      real(wp) :: values(FIELDS)
-
-      values(:DISPLACEMENTS) = weighted(x(:DISPLACEMENTS, :), point%nodes, point%weights)
-      values(DISPLACEMENTS + 1:) = weighted(x(DISPLACEMENTS + 1:, :), point%nodes, point%pressure_weights)
-   end function unknowns_at
-
-   !> Velocities or accelerations there [m/s, m/s2].
-   pure function motion_at(point, v) result(values)
-      type(point_t), intent(in) :: point
-      real(wp), intent(in) :: v(:, :)   !< (2 or more, nodes)
-      real(wp) :: values(DISPLACEMENTS)
-
-      values = weighted(v(:DISPLACEMENTS, :), point%nodes, point%weights)
-   end function motion_at
-
-   pure function weighted(x, nodes, weights) result(values)
-      real(wp), intent(in) :: x(:, :), weights(6)
-      integer, intent(in) :: nodes(6)
+      real(wp), intent(in) :: x(:, :)   !< (DISPLACEMENTS or FIELDS, nodes)
       real(wp) :: values(size(x, 1))
       integer :: k
 
       values = 0.0_wp
-      do k = 1, 6
-         values = values + weights(k)*x(:, nodes(k))
+      do k = 1, size(point%nodes)
+         associate (of_node => x(:, point%nodes(k)))
+            values(:DISPLACEMENTS) = values(:DISPLACEMENTS) + point%weights(k)*of_node(:DISPLACEMENTS)
+            values(DISPLACEMENTS + 1:) = values(DISPLACEMENTS + 1:) &
+                                         + point%pressure_weights(k)*of_node(DISPLACEMENTS + 1:)
+         end associate
       end do
-   end function weighted
+   end function values_at
 end module named_points

@@ -81,7 +81,12 @@ contains
       material%name = name(:len(material%name))
       call ask_stress(model%step_tolerance, group)
       call new_material(trim(group%name), group, material%law, title, fault)
-      if (fault%code == 0) call check_tangent(material, at_line(group%file, line_of(group, 'tangent')), fault)
+      if (fault%code /= 0) return
+      select type (law => material%law)
+      type is (mud_t)
+         if (law%given_tangent == 0) call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'tangent'))// &
+            'tangent = 0 gives no slopes; Newton needs 1, 2 or 3 (3: consistent).')
+      end select
       if (fault%code == 0) model%materials = [model%materials, material]
    end subroutine build_material
 
@@ -99,19 +104,6 @@ contains
       end if
       if (.not. given(group, 'scheme') .and. tolerance < TIGHT) call set_entry(group, 'scheme', '2')
    end subroutine ask_stress
-
-   !> Newton's method needs slopes.
-   subroutine check_tangent(material, place, fault)
-      type(material_slot_t), intent(in) :: material
-      character(*), intent(in) :: place
-      type(fault_t), intent(inout) :: fault
-
-      select type (law => material%law)
-      type is (mud_t)
-         if (law%given_tangent == 0) call raise(fault, EXIT_INPUT, place// &
-            'tangent = 0 gives no slopes; Newton needs 1, 2 or 3 (3: consistent).')
-      end select
-   end subroutine check_tangent
 
    !> &region, once mesh, laws and curves are known: its part of the domain. Fault EXIT_GROUP: a group or name that is
    !> not defined, or an element of two regions. EXIT_INPUT: no void ratio where there are fluids, two retentions or

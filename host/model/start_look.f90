@@ -9,9 +9,9 @@ module start_look
    use history_shapes, only: slope_beside
    use warnings, only: print_warning
    use start_findings, only: balance_t
-   use model_types, only: model_t, action_t, factor_at, fix_t, plate_t
+   use model_types, only: model_t, factor_at, fix_t, plate_t
    use porous_domain, only: COUPLED, DRAINED
-   use scene_parts, only: acts_in, amplitude_t, place_of, LOAD_AIR, PRESCRIBED_P_A
+   use scene_parts, only: acts_in, place_of, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)
@@ -21,7 +21,6 @@ module start_look
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< Of a pressure.
    real(wp), parameter :: AT_ONCE = 0.05_wp      !< Share of the largest velocity of a motion: no start from rest.
    real(wp), parameter :: HARD = 1.0e4_wp        !< [kPa] Of a plate; above it a force in N is likely.
-   real(wp), parameter :: BRIEF = 0.1_wp         !< Share of the time before a stage that a pulse lasts.
 contains
    !> Prints all of them.
    subroutine warn_of_start(model, balance)
@@ -32,7 +31,6 @@ contains
       call look_at_balance(model, balance)
       call look_at_air(model)
       call look_at_water_outside(model)
-      call look_at_velocity(model)
       call look_at_dashpots(model)
       call look_at_held_water(model)
       do i = 1, size(model%fixes)
@@ -42,7 +40,6 @@ contains
       do i = 1, size(model%plates)
          call look_at_plate(model, model%plates(i))
       end do
-      call look_at_pulses(model)
    end subroutine warn_of_start
 
    !> A start that is not in balance. Where no &initial gives a stress, a static stage finds the balance.
@@ -111,22 +108,6 @@ contains
          if (abs(slope) > 0.0_wp) text = text//', '//key//'_slope = '//short(slope)
       end function meant_by
    end subroutine look_at_air
-
-   !> A velocity at the start where the first stage has no inertia and so ends at rest.
-   subroutine look_at_velocity(model)
-      type(model_t), intent(in) :: model
-      integer :: i
-
-      if (has_inertia(model%stages(1)%kind)) return
-      do i = 1, size(model%initials)
-         associate (one => model%initials(i))
-            if (.not. (abs(one%v_z) > 0.0_wp .or. abs(one%wave) > 0.0_wp)) cycle
-            call print_warning(place_of(one)//'the velocity of '''//trim(one%group_name)//''' has no effect: the '// &
-               'run begins with stage '//trim(model%stages(1)%name)//', which has no inertia and leaves it at rest.'// &
-               ' Begin with a dynamic stage, and give the stress of the start by stress of &initial.')
-         end associate
-      end do
-   end subroutine look_at_velocity
 
    !> Ground that joins or leaves in a dynamic stage where dashpots alone hold the rest upright.
    subroutine look_at_dashpots(model)
@@ -199,7 +180,8 @@ contains
                      ! What is held along the normal needs no load.
                      if (carried(merge(1, 2, abs(x(2, edges(2, k)) - x(2, edges(1, k))) > &
                                              abs(x(1, edges(2, k)) - x(1, edges(1, k)))), middle)) cycle
-                     pressure = largest_of(model, fix, x(2, middle))
+                     pressure = maxval((fix%value + fix%value_slope*(x(2, middle) - fix%datum)) &
+                                       *extremes(model, fix%amplitude))
                   end associate
                   if (.not. pressure > 0.0_wp) cycle
                   bare = bare + 1
@@ -241,16 +223,16 @@ contains
       end associate
    end subroutine find_carried
 
-   !> Largest value of a &fix at a height.
-   real(wp) function largest_of(model, fix, z) result(value)
+   !> Least and largest factor of a history. [-]
+   pure function extremes(model, amplitude) result(factors)
       type(model_t), intent(in) :: model
-      type(fix_t), intent(in) :: fix
-      real(wp), intent(in) :: z   !< [m]
+      integer, intent(in) :: amplitude   !< As of factor_at.
+      real(wp) :: factors(2)
 
-      value = fix%value + fix%value_slope*(z - fix%datum)
-      if (fix%amplitude > 0) value = max(value*maxval(model%amplitudes(fix%amplitude)%values), &
-                                         value*minval(model%amplitudes(fix%amplitude)%values))
-   end function largest_of
+      factors = 1.0_wp
+      if (amplitude > 0) factors = [minval(model%amplitudes(amplitude)%values), &
+                                    maxval(model%amplitudes(amplitude)%values)]
+   end function extremes
 
    !> A displacement that does not begin from rest in a dynamic stage: what moves at once is struck.
    subroutine look_at_motion(model, fix)
@@ -266,7 +248,9 @@ contains
          do s = 1, size(model%stages)
             if (s > 1) start = start + model%stages(s - 1)%duration
             if (.not. has_inertia(model%stages(s)%kind) .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
-            after = fix%value*slope_after(h, max(start, fix%from))
+            after = 0.0_wp
+            i = count(h%times <= max(start, fix%from))
+            if (i > 0) after = fix%value*slope_beside(h%times, h%values, h%arcs, i, 1)
             before = 0.0_wp
             if (s > 1 .and. fix%from <= start) then
                if (has_inertia(model%stages(s - 1)%kind) .and. acts_in(fix%stages, model%stages(s - 1)%name)) cycle
@@ -311,17 +295,6 @@ contains
       end do
    end subroutine look_at_zero
 
-   !> Slope of a history just after a time [1/s].
-   pure real(wp) function slope_after(history, time) result(slope)
-      type(amplitude_t), intent(in) :: history
-      real(wp), intent(in) :: time   !< [s]
-      integer :: k
-
-      slope = 0.0_wp
-      k = count(history%times <= time)
-      if (k > 0) slope = slope_beside(history%times, history%values, history%arcs, k, 1)
-   end function slope_after
-
    !> A force that seems to be in N, and a plate on the ground that nothing presses down.
    subroutine look_at_plate(model, plate)
       type(model_t), intent(in) :: model
@@ -339,9 +312,7 @@ contains
       end if
       area = r(2) - r(1)
       if (model%domain%axisymmetric) area = PI*(r(2)**2 - r(1)**2)
-      forces = plate%force
-      if (plate%amplitude > 0) forces = plate%force*[minval(model%amplitudes(plate%amplitude)%values), &
-                                                     maxval(model%amplitudes(plate%amplitude)%values)]
+      forces = plate%force*extremes(model, plate%amplitude)
       ! A boundary along z has no area that a vertical force could press on.
       if (area > 0.0_wp .and. maxval(abs(forces)) > HARD*area) call print_warning(place_of(plate)// &
          'the force of the plate '''// &
@@ -351,15 +322,10 @@ contains
       if (plate%group == 0) then
          if (plate%corners(1, 2) < plate%corners(1, 1)) return
       end if
-      do i = 1, size(model%fixes)
-         if (moves(model%fixes(i)%group_name) .and. model%fixes(i)%field <= DISPLACEMENTS) return
-      end do
-      do i = 1, size(model%loads)
-         if (moves(model%loads(i)%group_name)) return
-      end do
-      do i = 1, size(model%initials)
-         if (moves(model%initials(i)%group_name) .and. abs(model%initials(i)%v_z) > 0.0_wp) return
-      end do
+      if (any([(moves(model%fixes(i)%group_name) .and. model%fixes(i)%field <= DISPLACEMENTS, &
+                i=1, size(model%fixes)), (moves(model%loads(i)%group_name), i=1, size(model%loads)), &
+               (moves(model%initials(i)%group_name) .and. abs(model%initials(i)%v_z) > 0.0_wp, &
+                i=1, size(model%initials))])) return
       call print_warning(place_of(plate)//'nothing presses the plate '''//trim(plate%name)//''' down: it has no '// &
          'weight (weight = ''yes'' and gravity), no negative force (force acts upwards), no &fix and no &load.')
    contains
@@ -371,35 +337,4 @@ contains
       end function moves
    end subroutine look_at_plate
 
-   !> A short pulse that is over before the first dynamic stage begins, though what follows it acts there: its times may
-   !> be meant from the start of that stage.
-   subroutine look_at_pulses(model)
-      type(model_t), intent(in) :: model
-      integer :: i
-
-      do i = 1, size(model%actions)
-         if (model%actions(i)%amplitude > 0) call look(model%actions(i))
-      end do
-   contains
-      subroutine look(item)
-         type(action_t), intent(in) :: item
-         real(wp) :: start
-         integer :: s
-
-         s = findloc(has_inertia(model%stages%kind), .true., dim=1)
-         if (s < 2) return
-         if (.not. acts_in(item%stages, model%stages(s)%name)) return
-         start = sum(model%stages(:s - 1)%duration)
-         associate (h => model%amplitudes(item%amplitude), n => size(model%amplitudes(item%amplitude)%times))
-            if (size(h%stages) > 0) return
-            if (h%times(n) > start .or. h%times(n) - h%times(1) > BRIEF*start) return
-            if (abs(h%values(n) - h%values(1)) > 0.0_wp .or. .not. any(abs(h%values - h%values(1)) > 0.0_wp)) return
-            ! What acts from that stage on alone is told by its first factor.
-            if (.not. any([(acts_in(item%stages, model%stages(i)%name), i=1, s - 1)])) return
-            call print_warning(place_of(item)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &
-               ' s, before stage '//trim(model%stages(s)%name)//' begins at '//short(start)//' s; times of a '// &
-               '&history are those of the run, not of a stage: its key stages counts them from stages.')
-         end associate
-      end subroutine look
-   end subroutine look_at_pulses
 end module start_look

@@ -9,7 +9,7 @@ module output_tables
    use field_files, only: all_pressures
    use kinds, only: wp
    use model_types, only: model_t, point_t
-   use named_points, only: unknowns_at, motion_at
+   use named_points, only: values_at
    use reaction_rows, only: reaction_columns, reaction_row
    use run_observer, only: observer_t, FITS, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
@@ -135,7 +135,8 @@ contains
          real(wp) :: values(size(COLUMNS))
 
          associate (state => run%state)
-            values = [unknowns_at(point, state%x), motion_at(point, state%v), motion_at(point, state%a), &
+            values = [values_at(point, state%x), values_at(point, state%v(:DISPLACEMENTS, :)), &
+                      values_at(point, state%a(:DISPLACEMENTS, :)), &
                       state%stress(1:4, point%gauss), state%e(point%gauss), state%s(point%gauss)]
          end associate
       end function values

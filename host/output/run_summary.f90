@@ -7,7 +7,7 @@ module run_summary
    use faults, only: fault_t
    use kinds, only: wp
    use control_state, only: LIMITS, LIMIT_NAMES
-   use named_points, only: unknowns_at
+   use named_points, only: values_at
    use porous_domain, only: UNDRAINED
    use run_cost, only: print_cost
    use run_observer, only: observer_t, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
@@ -84,7 +84,7 @@ contains
       integer :: i, f
 
       do i = 1, size(run%model%output%points)
-         x = unknowns_at(run%model%output%points(i), run%state%x)
+         x = values_at(run%model%output%points(i), run%state%x)
          do f = 1, FIELDS
             if (.not. abs(x(f)) > abs(self%peaks%value(f, i))) cycle
             self%peaks%value(f, i) = x(f)

@@ -19,9 +19,11 @@ module effect_switches
       'absorbing|contact_drainage|seepage_face|friction|strength|void_ratio_in_retention|hysteresis|bonding|fabric|'// &
       'isotropic|lode|memory_rule|elastic_domain'
 
+   character(*), parameter :: SOIL = 'mud'   !< Its parameters may come from a file or be defaults.
+
    !> A key that says an effect.
    type :: switch_t
-      character(21) :: effect
+      character(23) :: effect
       character(9) :: group
       character(17) :: key         !< Empty: a group of the name says it.
       character(14) :: with        !< Words that say it; empty: any value but `without`.
@@ -53,9 +55,15 @@ module effect_switches
       switch_t('seepage_face', 'load', 'kind', 'rain', 'water'), &     ! and all rain flows in.
       switch_t('friction', 'contact', 'friction', '', '0'), &
       switch_t('friction', 'contact', 'cohesion', '', '0'), &
-      switch_t('strength', 'strength', '', '', '')]
-
-   character(*), parameter :: SOIL = 'mud'   !< Group whose parameters are switches of effects, too.
+      switch_t('strength', 'strength', '', '', ''), &
+      switch_t('hysteresis', SOIL, 'hysteresis', '', '0'), &
+      switch_t('bonding', SOIL, 'bonding', '', '0'), &
+      switch_t('fabric', SOIL, 'fabric', '', '0'), &
+      switch_t('isotropic', SOIL, 'isotropic', '', '0'), &
+      switch_t('lode', SOIL, 'lode', '', '0'), &
+      switch_t('memory_rule', SOIL, 'memory_rule', '', '0'), &
+      switch_t('elastic_domain', SOIL, 'rho_e', '', '0'), &
+      switch_t('void_ratio_in_retention', SOIL, 'Omega', '', '0')]
    real(wp), parameter :: ROUNDING = 1.0e-12_wp
 contains
    !> Makes the groups of a scene of those that were read, without the effects of its key `without`. Those that the
@@ -86,15 +94,15 @@ contains
       present = .false.
       do i = 1, size(groups)
          do k = 1, size(SWITCHES)
-            present = present .or. (SWITCHES(k)%effect == effect .and. SWITCHES(k)%makes .and. &
-                                    says(groups(i), SWITCHES(k)))
+            if (SWITCHES(k)%effect /= effect .or. .not. SWITCHES(k)%makes) cycle
+            present = says(groups(i), SWITCHES(k))
+            if (present) return
          end do
-         if (parameter_of(groups(i), switch_of_soil(effect)) > 0.0_wp) present = .true.
       end do
    end function is_present
 
    !> Whether a group says an effect by a key.
-   pure logical function says(group, switch)
+   logical function says(group, switch)
       type(group_t), intent(in) :: group
       type(switch_t), intent(in) :: switch
       character(LENGTH) :: value
@@ -103,6 +111,10 @@ contains
 
       says = group%name == switch%group
       if (.not. says .or. switch%key == '') return
+      if (group%name == SOIL) then
+         says = parameter_of(group, trim(switch%key)) > 0.0_wp
+         return
+      end if
       says = given(group, trim(switch%key))
       if (.not. says) return
       call get_text(group, trim(switch%key), value)
@@ -135,40 +147,23 @@ contains
       do i = 1, size(kept)
          associate (group => scene%groups(i))
             do k = 1, size(SWITCHES)
-               if (SWITCHES(k)%effect /= effect .or. .not. says(group, SWITCHES(k))) cycle
+               if (SWITCHES(k)%effect /= effect) cycle
+               if (.not. says(group, SWITCHES(k))) cycle
                kept(i) = kept(i) .and. SWITCHES(k)%without /= ''
                if (kept(i)) call set_entry(group, trim(SWITCHES(k)%key), trim(SWITCHES(k)%without))
             end do
-            if (group%name == SOIL .and. switch_of_soil(effect) /= '') &
-               call set_entry(group, switch_of_soil(effect), '0')
          end associate
       end do
       scene%groups = pack(scene%groups, kept)
    end subroutine remove
 
-   pure logical function asks_for_weight(group) result(asks)
+   logical function asks_for_weight(group) result(asks)
       type(group_t), intent(in) :: group
 
-      asks = says(group, switch_t('', 'initial', 'stress', 'geostatic', '')) .or. &
-             says(group, switch_t('', 'plate', 'weight', 'yes', '')) .or. &
-             (group%name == 'initial' .and. given(group, 'water_table'))
+      asks = any([says(group, switch_t('', 'initial', 'stress', 'geostatic', '')), &
+                  says(group, switch_t('', 'plate', 'weight', 'yes', '')), &
+                  group%name == 'initial' .and. given(group, 'water_table')])
    end function asks_for_weight
-
-   !> Parameter of the soil that says an effect; empty: none does.
-   pure function switch_of_soil(effect) result(parameter)
-      character(*), intent(in) :: effect
-      character(:), allocatable :: parameter
-
-      parameter = ''
-      select case (effect)
-      case ('hysteresis', 'bonding', 'fabric', 'isotropic', 'lode', 'memory_rule')
-         parameter = effect
-      case ('elastic_domain')
-         parameter = 'rho_e'
-      case ('void_ratio_in_retention')
-         parameter = 'Omega'
-      end select
-   end function switch_of_soil
 
    !> Where p_a and p_c are prescribed, p_w is as well: without these two its boundary would be closed. Empty: nowhere.
    function water_given_by_others(fixes) result(why)
@@ -231,14 +226,14 @@ contains
    !> refused, which is told where the model is built.
    real(wp) function parameter_of(group, name) result(value)
       type(group_t), intent(in) :: group
-      character(*), intent(in) :: name   !< Empty: none, 0.
+      character(*), intent(in) :: name
       real(wp), allocatable :: props(:)
       character(256) :: title
       character(600) :: doubt
       type(fault_t) :: fault
 
       value = 0.0_wp
-      if (group%name /= SOIL .or. name == '') return
+      if (group%name /= SOIL) return
       call read_parameters(group, props, title, doubt, fault)
       if (fault%code == 0) value = props(property_index(name))
    end function parameter_of

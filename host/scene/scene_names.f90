@@ -6,8 +6,8 @@ module scene_names
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use material_registry, only: is_law
-   use namelists, only: group_t, entry_t, find_entry
-   use texts, only: whole
+   use namelists, only: group_t, find_entry
+   use texts, only: whole, LENGTH
    implicit none (type, external)
    private
    public :: check_names
@@ -25,52 +25,41 @@ contains
    subroutine check_names(groups, fault)
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: name, place
-      integer :: g, i, of
+      character(:), allocatable :: place
+      character(LENGTH) :: names(size(groups))
+      integer :: lists(size(groups)), g, i, k
 
+      names = ''
       do g = 1, size(groups)
-         of = list_of(groups(g))
-         if (of == 0) cycle
+         lists(g) = list_of(groups(g))
+         if (lists(g) == 0) cycle
          associate (item => groups(g)%entries(find_entry(groups(g), 'name')))
-            name = trim(item%values(1))
-            place = at_line(groups(g)%file, item%line)//'name = '''//name//''''
+            names(g) = item%values(1)
+            place = at_line(groups(g)%file, item%line)//'name = '''//trim(names(g))//''''
          end associate
-         if (name == '' .or. len(name) > NAME_LENGTH) then
+         i = findloc(lists(:g - 1) == lists(g) .and. names(:g - 1) == names(g), .true., dim=1)
+         if (names(g) == '' .or. len_trim(names(g)) > NAME_LENGTH) then
             call raise(fault, EXIT_INPUT, place//': a name has 1 to '//whole(NAME_LENGTH)//' characters.')
-         else if (any(WRITTEN == groups(g)%name) .and. verify(name, FIT) > 0) then
+         else if (any(WRITTEN == groups(g)%name) .and. verify(trim(names(g)), FIT) > 0) then
             call raise(fault, EXIT_INPUT, place//' becomes a file or a column: use letters, digits, "_", "-" and '// &
                        '"." alone.')
+         else if (i > 0) then
+            call raise(fault, EXIT_INPUT, place//' is given twice, first in line '// &
+                       whole(groups(i)%entries(find_entry(groups(i), 'name'))%line)//'; names must differ.')
          end if
-         do i = 1, g - 1
-            if (list_of(groups(i)) /= of .or. fault%code /= 0) cycle
-            associate (item => groups(i)%entries(find_entry(groups(i), 'name')))
-               if (item%values(1) == name) call raise(fault, EXIT_INPUT, place//' is given twice, first in line '// &
-                                                      whole(item%line)//'; names must differ.')
-            end associate
-         end do
          if (fault%code /= 0) return
       end do
       do g = 1, size(groups)
          i = find_entry(groups(g), 'stages')
-         if (i > 0) call check_stages(groups, groups(g)%file, groups(g)%entries(i), fault)
+         if (i == 0) cycle
+         associate (item => groups(g)%entries(i))
+            do k = 1, item%count
+               if (.not. any(names == item%values(k) .and. groups%name == 'stage')) call raise(fault, EXIT_GROUP, &
+                  at_line(groups(g)%file, item%line)//'there is no stage '''//trim(item%values(k))//'''.')
+            end do
+         end associate
       end do
    end subroutine check_names
-
-   subroutine check_stages(groups, file, item, fault)
-      type(group_t), intent(in) :: groups(:)
-      character(*), intent(in) :: file
-      type(entry_t), intent(in) :: item
-      type(fault_t), intent(inout) :: fault
-      integer :: g, k
-
-      each: do k = 1, item%count
-         do g = 1, size(groups)
-            if (groups(g)%name /= 'stage') cycle
-            if (groups(g)%entries(find_entry(groups(g), 'name'))%values(1) == item%values(k)) cycle each
-         end do
-         call raise(fault, EXIT_GROUP, at_line(file, item%line)//'there is no stage '''//trim(item%values(k))//'''.')
-      end do each
-   end subroutine check_stages
 
    !> Number of the list that a group's name belongs to, 0 if it has none.
    integer function list_of(group) result(number)

@@ -7,12 +7,12 @@ module scene_parts
    use faults, only: at_line
    use history_shapes, only: arc_at
    use texts, only: LENGTH
-   use unknown_fields, only: FIELDS
+   use unknown_fields, only: FIELDS, FIELD_NAMES
    implicit none (type, external)
    private
    public :: scene_item_t, amplitude_t, stage_t
    public :: NAME_LENGTH, FINGERPRINT_LENGTH, NEVER, acts_in, place_of, amplitude_at
-   public :: PRESCRIBED_P_A, PRESCRIBED_OF_BODY
+   public :: PRESCRIBED_P_A, PRESCRIBED_WORDS, PRESCRIBED_OF_BODY
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
              LOAD_OF_BODY
 
@@ -21,6 +21,7 @@ module scene_parts
 
    ! Numbers of words, in the order of those of the key (a test holds the two together).
    integer, parameter :: PRESCRIBED_P_A = FIELDS + 1   !< &fix field, after those of unknown_fields: air pressure.
+   character(3), parameter :: PRESCRIBED_WORDS(*) = [FIELD_NAMES, 'p_a']   !< Of &fix field, but for the next one.
    integer, parameter :: PRESCRIBED_OF_BODY = FIELDS + 2  !< &fix field: coordinate of a plate alone; read as u_z.
    integer, parameter :: LOAD_PRESSURE = 1    !< &load kind: against the outward normal [kPa].
    integer, parameter :: LOAD_SHEAR_R = 2, LOAD_SHEAR_Z = 3   !< &load kind: along the axes [kPa].

@@ -2,7 +2,7 @@
 !> Keys of a scene that change nothing because another key says so, and definitions that nobody uses.
 module idle_keys
    use faults, only: at_line
-   use generalised_alpha, only: has_rates, DYNAMIC
+   use generalised_alpha, only: has_rates, has_inertia, DYNAMIC
    use kinds, only: wp
    use key_schema, only: key_t, idle_reason, get_text, given, line_of, place_of
    use material_registry, only: is_law
@@ -46,6 +46,7 @@ contains
       type(group_t), intent(in) :: group
       character(:), allocatable :: why
       logical :: controlled
+      integer :: i
 
       controlled = any(model%stages%controlled .and. model%stages%name == name_of(group))
       why = idle_reason(keys, key, group)
@@ -55,6 +56,9 @@ contains
          why = ': every stage is static and has no time; analysis = ''quasi_static'' of &stage has'
       else if (index(key%acts, ':dynamic') > 0 .and. .not. any(model%stages%kind == DYNAMIC)) then
          why = ': no stage is dynamic'
+      else if (index(key%acts, ':moving') > 0 .and. .not. has_inertia(model%stages(1)%kind)) then
+         why = ': the run begins with stage '//trim(model%stages(1)%name)//', which has no inertia and leaves it '// &
+               'at rest; begin with a dynamic stage, and give the stress of the start by stress of &initial'
       else if (index(key%acts, ':gravity') > 0 .and. .not. model%domain%gravity > 0.0_wp) then
          why = ' without gravity of &scene'
       else if (index(key%acts, ':controlled') > 0 .and. .not. controlled) then
@@ -63,7 +67,8 @@ contains
          why = ' on controlled steps; give dt and steps = ''given'''
       else if (index(key%acts, ':grows') > 0 .and. .not. (controlled .or. given(group, 'dt_growth'))) then
          why = ' on steps that are given without dt_growth'
-      else if (index(key%acts, ':lanes') > 0 .and. .not. with_lanes(model)) then
+      else if (index(key%acts, ':lanes') > 0 .and. &
+               .not. any([(model%domain%regions(i)%law%has_lanes, i=1, size(model%domain%regions))])) then
          why = ': this processor is older than x86-64-v3, the library was built without lanes, or no region is of '// &
                '&mud with its guards and isotropic mechanism and without hysteresis, preloading and fluidity'
       else if (index(key%acts, ':p_w') > 0 .and. .not. model%domain%with_w) then
@@ -76,17 +81,6 @@ contains
       if (why /= '') call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'// &
                                         trim(group%name)//' has no effect'//why//'.')
    end subroutine judge
-
-   !> Whether the points of a region can go side by side.
-   pure logical function with_lanes(model)
-      type(model_t), intent(in) :: model
-      integer :: i
-
-      with_lanes = .false.
-      do i = 1, size(model%domain%regions)
-         with_lanes = with_lanes .or. model%domain%regions(i)%law%has_lanes
-      end do
-   end function with_lanes
 
    !> Definitions, of a kind that keys refer to, that no key of the scene names.
    subroutine warn_of_unused_definitions(keys, scene)

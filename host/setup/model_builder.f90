@@ -2,7 +2,7 @@
 !> Builds the model of a scene: mesh, materials, supports, loads and contacts with every name resolved, the
 !> unknowns numbered.
 module model_builder
-   use acting_places, only: check_ground, check_sides
+   use acting_places, only: check_actions
    use kinds, only: wp
    use faults, only: fault_t, raise
    use degrees_of_freedom, only: number_unknowns
@@ -12,7 +12,6 @@ module model_builder
    use key_table, only: key_table_t
    use load_shapes, only: shape_loads, ties_of
    use material_registry, only: is_law
-   use mesh_look, only: check_carried
    use model_types, only: model_t
    use namelists, only: group_t
    use porous_domain, only: domain_t, prepare_domain
@@ -59,10 +58,8 @@ contains
       call build('contact')
       call build('tie')
       if (fault%code == 0) call build_terms(scene, model, fault)
-      if (fault%code == 0) call check_carried(model, fault)
       if (fault%code == 0) call check_places(model, fault)
-      if (fault%code == 0) call check_ground(model, fault)
-      if (fault%code == 0) call check_sides(model, fault)
+      if (fault%code == 0) call check_actions(model, fault)
       if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       call build('point')

@@ -9,9 +9,7 @@ module scene_warnings
    use warnings, only: print_warning
    use start_findings, only: tension_t, balance_t
    use key_schema, only: line_of, get_number
-   use material_elastic, only: elastic_t
    use material_point, only: untested
-   use mesh_look, only: look_at_slits
    use model_types, only: model_t
    use scene_parts, only: place_of
    use scene_types, only: scene_t
@@ -23,25 +21,23 @@ module scene_warnings
    private
    public :: warn_of_scene
 
-   real(wp), parameter :: SAME_PLACE = 1.0e-6_wp      !< Share of the mesh below which a point is a node.
+   real(wp), parameter :: SAME_PLACE = 1.0e-6_wp      !< Share of the mesh: nearer points are at one place.
    real(wp), parameter :: LARGE_MESH = 1.0e3_wp, SMALL_MESH = 1.0e-3_wp   !< [m]
    real(wp), parameter :: LARGE_FILE = 100.0_wp       !< [m] Of a mesh from a file, which may well be drawn in mm.
-   real(wp), parameter :: PERMEABLE = 1.0e-8_wp       !< [m2] Coarse gravel; above it a conductivity [m/s] is likely.
    real(wp), parameter :: ATMOSPHERE = 101.325_wp     !< [kPa]
    real(wp), parameter :: FEW = 0.1_wp                !< Share of the points of a region.
-   real(wp), parameter :: STIFF = 1.0e9_wp            !< [kPa] Five times steel; above it a modulus in Pa is likely.
 
-   !> Values of fluids and grains that suggest another unit: below `lower`, or above `upper` and below `beyond`.
+   !> Values of keys that suggest another unit: below `lower`, or above `upper` and below `beyond`.
    type :: usual_t
-      character(5) :: key
+      character(9) :: key
       real(wp) :: lower, upper, beyond
-      character(40) :: say
+      character(100) :: say
    end type usual_t
 
    real(wp), parameter :: FAR = huge(1.0_wp)
    real(wp), parameter :: RIGID = 1.0e11_wp   !< [kPa] So stiff a water is meant to be incompressible.
    ! Densities up to a third of mercury's, of grains up to more than lead's; viscosities up to hundreds of times that of
-   ! water, as in a centrifuge.
+   ! water, as in a centrifuge; moduli up to five times that of steel.
    type(usual_t), parameter :: USUAL(*) = [ &
       usual_t('k_w', 10.0_wp, 1.0e7_wp, RIGID, 'a bulk modulus in kPa (water 2.2e6)'), &
       usual_t('rho_w', 0.0_wp, 5.0_wp, FAR, 'a density in Mg/m3 (water 1)'), &
@@ -50,7 +46,10 @@ module scene_warnings
       usual_t('rho_a', 0.0_wp, 0.1_wp, FAR, 'a density in Mg/m3 (air 1.2e-3)'), &
       usual_t('eta_a', 0.0_wp, 1.0e-6_wp, FAR, 'a viscosity in kPa s (air 1.8e-8)'), &
       usual_t('p_ref', 10.0_wp, 1.0e4_wp, FAR, 'an absolute pressure in kPa (101.325)'), &
-      usual_t('rho_s', 0.0_wp, 20.0_wp, FAR, 'a density in Mg/m3 (quartz 2.65)')]
+      usual_t('rho_s', 0.0_wp, 20.0_wp, FAR, 'a density in Mg/m3 (quartz 2.65)'), &
+      usual_t('young', 0.0_wp, 1.0e9_wp, FAR, 'a modulus in kPa (steel 2.1e8)'), &
+      usual_t('intrinsic', 0.0_wp, 1.0e-8_wp, FAR, 'a permeability k in m2 (coarse gravel 1e-8); a '// &
+              'conductivity [m/s] is k rho_w g/eta_w, about 1e7 k')]
 contains
    !> Prints all warnings about a scene, in the order of their kinds.
    subroutine warn_of_scene(scene, model, tension, balance)
@@ -59,7 +58,7 @@ contains
       type(tension_t), intent(in) :: tension   !< Of the initial state.
       type(balance_t), intent(in) :: balance   !< Likewise.
 
-      call look_at_sizes(scene, model)
+      call look_at_sizes(model)
       call look_at_slits(model)
       call look_at_units(scene)
       call look_at_regions(model, tension)
@@ -69,14 +68,11 @@ contains
       call warn_of_idle_keys(scene, model)
    end subroutine warn_of_scene
 
-   !> Units of length, permeability and stiffness.
-   subroutine look_at_sizes(scene, model)
-      type(scene_t), intent(in) :: scene
+   !> The unit of length.
+   subroutine look_at_sizes(model)
       type(model_t), intent(in) :: model
       character(*), parameter :: REMEDY = ' scale = 1e-3 of &mesh reads millimetres, scale = 1 metres.'
-      real(wp) :: size_of, k
-      logical :: found
-      integer :: i
+      real(wp) :: size_of
 
       size_of = extent(model%domain%mesh)
       associate (source => model%mesh_source)
@@ -84,19 +80,9 @@ contains
              .not. source%scaled)) call print_warning(place_of(source)//'the mesh is '//short(size_of)// &
             ' m large; lengths are in m.'//REMEDY(:merge(len(REMEDY), 0, source%from_file)))
       end associate
-      do i = 1, size(scene%as_read)
-         associate (group => scene%as_read(i))
-            if (group%name /= 'permeability') cycle
-            k = 0.0_wp
-            call get_number(group, 'intrinsic', k, found)
-            if (k > PERMEABLE) call print_warning(at_line(group%file, line_of(group, 'intrinsic'))//'intrinsic = '// &
-               short(k)//' m2 is more than coarse gravel has; a conductivity [m/s] is k rho_w g/eta_w, about 1e7 '// &
-               'times the permeability k [m2].')
-         end associate
-      end do
    end subroutine look_at_sizes
 
-   !> Fluids and grains that seem to have another unit.
+   !> Keys that seem to have another unit.
    subroutine look_at_units(scene)
       type(scene_t), intent(in) :: scene
       real(wp) :: value
@@ -105,7 +91,7 @@ contains
 
       do g = 1, size(scene%as_read)
          associate (group => scene%as_read(g))
-            if (group%name /= 'fluids' .and. group%name /= 'region') cycle
+            if (all(group%name /= [character(12) :: 'fluids', 'region', 'elastic', 'permeability'])) cycle
             do k = 1, size(USUAL)
                call get_number(group, trim(USUAL(k)%key), value, found)
                if (.not. found) cycle
@@ -118,7 +104,7 @@ contains
       end do
    end subroutine look_at_units
 
-   !> Regions without an element, too stiff, or whose law is used outside the tests behind it, where a few points at low
+   !> Regions without an element, or whose law is used outside the tests behind it, where a few points at low
    !> stress, as below a surface, are none. What laws say of their parameters, and laws in another unit of stress: each
    !> material once.
    subroutine look_at_regions(model, tension)
@@ -133,11 +119,6 @@ contains
             if (.not. any(model%domain%region_of == i)) call print_warning(place_of(given)//'the region '''// &
                trim(given%group_name)//''' has no element'//trim(merge(': other regions name them all.', &
                                                                        '.                             ', given%rest)))
-            select type (law)
-            type is (elastic_t)
-               if (law%young > STIFF) call print_warning(place//' has young = '//short(law%young)//' kPa, more '// &
-                  'than any soil or metal; moduli are in kPa.')
-            end select
             if (used%outside_e > 0 .or. used%outside_p > FEW*used%points) call print_warning(place//' begins '// &
                'outside what it was fitted to at '//whole(max(used%outside_e, used%outside_p))//' of '// &
                whole(used%points)//' points: '//untested(law, used%e, used%p)//'.')
@@ -185,4 +166,80 @@ contains
          end associate
       end do
    end subroutine look_at_initials
+
+   !> Warns of boundary nodes at one place that no contact, tie or plate joins.
+   subroutine look_at_slits(model)
+      type(model_t), intent(in) :: model
+      integer, allocatable :: outer(:)
+      real(wp) :: near
+      integer :: i, k, pairs, first
+
+      outer = pack([(i, i=1, size(model%domain%mesh%x, 2))], are_outside(model))
+      pairs = 0
+      first = 0
+      associate (x => model%domain%mesh%x)
+         near = SAME_PLACE*maxval([(maxval(x(i, outer)) - minval(x(i, outer)), i=1, 2)])
+         do i = 2, size(outer)
+            do k = 1, i - 1
+               if (abs(x(1, outer(i)) - x(1, outer(k))) > near) cycle
+               if (abs(x(2, outer(i)) - x(2, outer(k))) > near) cycle
+               if (are_joined(model, outer(i), outer(k))) cycle
+               if (first == 0) first = outer(i)
+               pairs = pairs + 1
+            end do
+         end do
+         if (pairs > 0) call print_warning('The mesh has '//whole(pairs)//' pairs of boundary nodes at one place '// &
+            'that nothing joins, the first at ('//short(x(1, first))//', '//short(x(2, first))//') m: the ground '// &
+            'is slit there. Merge them (Coherence in Gmsh, or gmsh.model.mesh.removeDuplicateNodes()), or give a '// &
+            '&contact or &tie between the two sides.')
+      end associate
+   end subroutine look_at_slits
+
+   !> Nodes on sides that one triangle alone has. (nodes)
+   pure function are_outside(model) result(outside)
+      type(model_t), intent(in) :: model
+      logical :: outside(size(model%domain%mesh%x, 2))
+      integer :: users(size(outside)), e, k
+
+      users = 0
+      outside = .false.
+      associate (t6 => model%domain%mesh%t6)
+         do e = 1, size(t6, 2)
+            users(t6(4:6, e)) = users(t6(4:6, e)) + 1
+         end do
+         do e = 1, size(t6, 2)
+            do k = 1, 3
+               if (users(t6(k + 3, e)) == 1) outside(t6([k, mod(k, 3) + 1, k + 3], e)) = .true.
+            end do
+         end do
+      end associate
+   end function are_outside
+
+   pure logical function are_joined(model, a, b)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: a, b   !< Nodes.
+      integer :: i
+
+      are_joined = .true.
+      associate (groups => model%domain%mesh%groups)
+         do i = 1, size(model%contacts)
+            associate (slave => groups(model%contacts(i)%slave)%nodes, master => groups(model%contacts(i)%master)%nodes)
+               if (any(slave == a) .and. any(master == b)) return
+               if (any(slave == b) .and. any(master == a)) return
+            end associate
+         end do
+         do i = 1, size(model%ties)
+            associate (one => model%ties(i)%pairs(1, :), other => model%ties(i)%pairs(2, :))
+               if (any((one == a .and. other == b) .or. (one == b .and. other == a))) return
+            end associate
+         end do
+         do i = 1, size(model%plates)
+            if (model%plates(i)%group == 0) cycle
+            associate (nodes => groups(model%plates(i)%group)%nodes)
+               if (any(nodes == a) .and. any(nodes == b)) return
+            end associate
+         end do
+      end associate
+      are_joined = .false.
+   end function are_joined
 end module scene_warnings

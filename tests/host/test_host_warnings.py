@@ -46,8 +46,9 @@ def warnings(text, *words):
 DOUBTS = [
     ("tension in MUD", "p_w_slope = -9.81", "p_w = 30", ["tensile at", "points of MUD"]),
     ("surface below the mesh", "surface = 0", "surface = -1", ["surface = -1 m lies below", "'all' at 0 m"]),
-    ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8", ["intrinsic = 1.1e-8 m2", "conductivity"]),
-    ("stiffness", "young = 1e6", "young = 1.1e9", ["young = 1.1e9 kPa"]),
+    ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8",
+     ["intrinsic = 1.1e-8 of &permeability", "conductivity"]),
+    ("stiffness", "young = 1e6", "young = 1.1e9", ["young = 1.1e9 of &elastic", "a modulus in kPa"]),
     ("material with a stress in another unit", "toyoura.nml'", "toyoura.nml' P_a = 5000",
      ["scene.nml:3: ", "P_a", "usual"]),
     ("material in another unit than the scene", "toyoura.nml'", "toyoura.nml' p_atm = 101325",
@@ -255,13 +256,15 @@ SCENES = {   # What differs from this scene.
     "dynamic": dict(analysis="dynamic", steps="dt = 1"), 
     "no_air": dict(fields="u-p_w", start="p_c = 0 p_c_slope = 0 saturation = 1"), "dry": dict(fields="u"),
     "light": dict(gravity=0), "ideal": dict(gas="ideal", air="p_ref = 100"),
-    "table": dict(start="water_table = 0"), "drained": dict(drainage="drained", pores="retention = 'c'")}
+    "table": dict(start="water_table = 0"), "moving": dict(start="v_z = 1 wave = 1 wave_number = 1"),
+    "drained": dict(drainage="drained", pores="retention = 'c'")}
 TOLD = [   # The differences of a scene, why keys of it have no effect, these keys.
     ("", "every stage is static", "scene.saturation_rate scene.initial_flow fluids.k_w fluids.eta_w fluids.k_a "
      "fluids.eta_a fluids.henry permeability.s_min permeability.s_max permeability.b permeability.c permeability.floor "
      "region.viscosity"),
     ("", "no stage is dynamic", "region.damping region.stiffness_damping scene.seepage_inertia"),
     ("", "on steps that are given", "stage.output_dt stage.dt_max"),
+    ("moving", "the run begins with stage s", "initial.v_z initial.wave"),
     ("", "this processor is older than x86-64-v3", "scene.lanes"),
     ("power", "every stage is static", "permeability.a permeability.b permeability.c"),
     ("mualem", "every stage is static", "permeability.m"),
@@ -290,7 +293,8 @@ def conditions_of_sources():
 def test_every_key_without_effect_is_told_with_its_reason():
     conditions = {"every stage is static": ":time", "no stage is dynamic": ":dynamic", "on steps that": ":controlled",
                   "on controlled steps": ":given", "without gravity": ":gravity", "no field p_c": ":p_c",
-                  "no field p_w": ":p_w", "no &region has drainage": ":flow", "this processor": ":lanes"}
+                  "no field p_w": ":p_w", "no &region has drainage": ":flow", "this processor": ":lanes",
+                  "the run begins with": ":moving"}
     said = {}
     for which, why, keys in TOLD:
         if which not in said:

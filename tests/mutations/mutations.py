@@ -268,7 +268,7 @@ MUTATIONS = [
 
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
 SPRINGS = "contact/plate_springs.f90"
-SEARCH, PLATE, JOINED = "contact/contact_search.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
+SEARCH, PLATE, JOINED = "contact/contact_geometry.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
 DRAINAGE, PLANE = "terms/contact_drainage.f90", "terms/plane_plates.f90"
 
 # Of the host's contact, below host.
@@ -292,8 +292,9 @@ CONTACT = [
     ("the tangent forgets the radius", (MORTAR, "p%d_ring = TWO_PI*p%d_xs(1, :)", "p%d_ring = 0.0_wp")),
     ("the tangent forgets the nodal pressures",
      (PENALTY, "if (result%pressure(i) > 0.0_wp) call add_node", "if (result%pressure(i) > huge(1.0_wp)) call add_node")),
-    ("nothing pushes the master", (RESPONSE, "push(2*i + 5:2*i + 6) = -p%nm(i)*nu", "push(2*i + 5:2*i + 6) = 0.0_wp*nu")),
-    ("an open gap pulls", (PENALTY, "penalty*max(-result%gap, 0.0_wp)", "penalty*(-result%gap)")),
+    ("nothing pushes the master", (MORTAR, "force(2*i + 5:2*i + 6) = -p%nm(i)*along",
+                                     "force(2*i + 5:2*i + 6) = 0.0_wp*along")),
+    ("an open gap pulls", (PENALTY, "at_nodes*max(-result%gap, 0.0_wp)", "at_nodes*(-result%gap)")),
     ("the search forgets the reach", (SEARCH, "near*[-1, -1, 1, 1]", "near*[0, 0, 1, 1]")),
     ("a plate feels nothing", (PLATE, "force = force + slopes(:, i)*result%force(n + i)",
                                "force = force + 0.0_wp*slopes(:, i)*result%force(n + i)")),
