@@ -262,8 +262,9 @@ def test_the_posterior_is_that_of_prior_and_data():
 
 
 def linear(random, errors, fitted=6, rows=40):
-    """A linear problem of as many curves as errors has: matrix, measurement and the true shares. errors : (curves, rows) in
-    standard deviations."""
+    """A linear problem of as many curves as errors has: matrix, measurement and the true shares.
+
+    errors : (curves, rows) in standard deviations."""
     along = np.linspace(0, 1, rows)[:, None] ** np.arange(fitted)
     matrix = np.concatenate([8 * along * random.standard_normal(fitted) / np.sqrt(rows) for _ in errors])
     shares = random.uniform(0.2, 0.8, fitted)
@@ -278,8 +279,8 @@ def solved(matrix, measured, curves):
 
 
 def test_deviations_of_a_linear_fit_are_those_of_the_closed_form():
-    # White noise of deviation s in every row of n: a residual is row/sqrt(n), so the covariance is s^2/n (A^T A)^-1. The
-    # mean of 100 estimates of s^2 with 314 degrees of freedom is right to 1 %; counting the rows loses 3 % at most.
+    # White noise of deviation s in every row of n: a residual is row/sqrt(n), so the covariance is s^2/n (A^T A)^-1.
+    # The mean of 100 estimates of s^2 with 314 degrees of freedom is right to 1 %; counting the rows loses 3 % at most.
     random = np.random.default_rng(5)
     for s in (0.2, 1.0, 4.0):
         ratios = []
@@ -317,8 +318,8 @@ def test_rows_whose_errors_follow_each_other_count_once():
 
 
 def test_intervals_of_a_retention_curve_hold_the_truth():
-    # A whole fit, forty times: S_w with noise of half of the scatter. Of 120 intervals of 95 % at least 104 hold the truth
-    # (binomial: fewer once in a thousand); with the told scatter for one observation a curve they were nine times as wide.
+    # A whole fit, forty times: S_w with noise of half of the scatter. Of 120 intervals of 95 % at least 104 hold the
+    # truth (binomial: fewer once in a thousand).
     suctions, widths, held = np.geomspace(0.5, 200.0, 40), [], []
     fixed = {"Omega": truth["Omega"], "S_max": truth["S_max"], "S_min": truth["S_min"]}
     for seed in range(40 if not light else 4):
