@@ -6,7 +6,7 @@
 module namelists
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use files, only: read_whole
-   use texts, only: lower_case, whole, mark_length, LENGTH
+   use texts, only: lower_case, whole, mark_length, LENGTH, PATH_LENGTH
    implicit none (type, external)
    private
    public :: entry_t, group_t, read_groups, groups_of_text, find_entry, set_entry, set_values, MAX_VALUES
@@ -28,7 +28,7 @@ module namelists
    !> `&name ... /`.
    type :: group_t
       character(LENGTH) :: name = ''       !< In lower case.
-      character(LENGTH) :: file = ''
+      character(PATH_LENGTH) :: file = ''
       integer :: line = 0
       integer :: count = 0                 !< Number of entries.
       type(entry_t), allocatable :: entries(:)

@@ -8,9 +8,11 @@ module texts
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: lower_case, short, whole, read_number, from_c, text_at, joined, word_place, mark_length, LENGTH
+   public :: lower_case, short, whole, read_number, from_c, text_at, joined, word_place, mark_length, LENGTH, &
+             PATH_LENGTH
 
-   integer, parameter :: LENGTH = 256   !< Longest key, value or path of a text that is read.
+   integer, parameter :: LENGTH = 256        !< Longest key or value of a text that is read.
+   integer, parameter :: PATH_LENGTH = 1024  !< Longest path of a file that is read, as of a word of a command line.
 
    !> An integer as text.
    interface whole

@@ -30,6 +30,9 @@ module material_mud
       'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile', &
       'turning points forgotten']
 
+   character(*), parameter :: SUCTION_KEYS(*) = [character(NAME_LENGTH) :: 'P_a', 'Omega', 'n_x', 'm_x', 'S_max', &
+      'S_min', 'b_1', 'b_2', 'hysteresis', 'P_aw', 'n_w', 'm_w', 'b_d', 'b_w']
+
    type, extends(material_t) :: mud_t
       real(wp), allocatable :: props(:)      !< PROPS as the registry of the library has them.
       real(wp), allocatable :: prepared(:)   !< PROPS, checked, in the library's own form.
@@ -101,6 +104,7 @@ contains
       law%unguarded = nint(law%props(property_index('cutoff'))) == 0
       law%overcounts_cycles = .true.
       law%e_0 = law%props(property_index('e_0'))
+      law%suction_keys = SUCTION_KEYS
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
       law%n_state = mud_prepared_statev(law%prepared)

@@ -91,6 +91,7 @@ module material_point
       logical :: given_tolerance = .false., given_scheme = .false.   !< Not the defaults: set by hand.
       character(NAME_LENGTH) :: guard_names(MOST_GUARDS) = ''
       character(NAME_LENGTH), allocatable :: state_names(:)
+      character(NAME_LENGTH), allocatable :: suction_keys(:)   !< Keys of its group that act with suction alone.
       character(DOUBT_LENGTH) :: doubt = ''      !< Sentence on parameters that are allowed and most often a mistake.
       type(stress_unit_t) :: unit                !< Unit of its stresses; kPa in the comments of this module.
       type(range_t) :: tested_e, tested_p        !< Void ratios, stresses [kPa] of the tests behind it; without: any.

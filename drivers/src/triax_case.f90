@@ -3,7 +3,7 @@
 module triax_case
    use, intrinsic :: iso_fortran_env, only: wp => real64
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use texts, only: short, whole, LENGTH
+   use texts, only: short, whole, LENGTH, PATH_LENGTH
    use namelists, only: group_t, read_groups, groups_of_text, set_entry
    use key_schema, only: key_t, check_group, refuse_idle_keys, place_of, get_text, line_of, UNBOUNDED
    use key_table, only: key_table_t, listing, reading
@@ -24,7 +24,8 @@ module triax_case
 
    !> A test.
    type :: case_t
-      character(LENGTH) :: file = '', name = '', title = '', material = ''
+      character(PATH_LENGTH) :: file = ''
+      character(LENGTH) :: name = '', title = '', material = ''
       type(soil_t) :: soil
       type(point_t) :: start
       type(test_stage_t), allocatable :: stages(:)

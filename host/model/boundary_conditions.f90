@@ -173,7 +173,8 @@ contains
       type(stage_t), intent(in) :: stage
       real(wp), intent(in) :: time   !< At the end of the step.
 
-      acts = acts_in(fix%stages, stage%name) .and. time > fix%from .and. time <= fix%until + ROUNDING*abs(time)
+      acts = acts_in(fix%stages, stage%name) .and. time > fix%from + ROUNDING*abs(time) .and. &
+             time <= fix%until + ROUNDING*abs(time)
    end function acts
 
    !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:

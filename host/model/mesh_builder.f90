@@ -5,6 +5,7 @@ module mesh_builder
    use kinds, only: wp
    use exit_codes, only: EXIT_MESH
    use faults, only: fault_t, raise, EXIT_INPUT
+   use files, only: beside
    use gmsh_reader, only: read_gmsh
    use graded_rectangle, only: graded_mesh
    use key_schema, only: UNBOUNDED
@@ -51,9 +52,8 @@ contains
       if (file == '') then
          call make_blocks(place_of(model%mesh_source), fineness, r, z, model%domain%mesh, fault)
       else
-         ! A path is relative to the file of the scene.
-         if (index(file, '/') /= 1) file = k%group%file(:index(k%group%file, '/', back=.true.))//file
-         call read_file(place_of(model%mesh_source), trim(file), scale, fineness, model%domain%mesh, fault)
+         call read_file(place_of(model%mesh_source), beside(trim(k%group%file), trim(file)), scale, &
+                        fineness, model%domain%mesh, fault)
       end if
    contains
       subroutine take_blocks(axis, blocks)

@@ -18,7 +18,7 @@ module model_types
    use retention_curves, only: retention_t
    use scene_parts, only: scene_item_t, amplitude_t, stage_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH, NEVER
    use solution, only: solution_t
-   use texts, only: LENGTH
+   use texts, only: LENGTH, PATH_LENGTH
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
@@ -138,7 +138,7 @@ module model_types
 
    !> Which scene a run is of, for its files and sentences.
    type :: origin_t
-      character(LENGTH) :: file = ''
+      character(PATH_LENGTH) :: file = ''
       character(NAME_LENGTH) :: name = ''
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
       integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.

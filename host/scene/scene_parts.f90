@@ -6,7 +6,7 @@ module scene_parts
    use convergence, only: BY_STAGE
    use faults, only: at_line
    use history_shapes, only: arc_at
-   use texts, only: LENGTH
+   use texts, only: LENGTH, PATH_LENGTH
    use unknown_fields, only: FIELDS, FIELD_NAMES
    implicit none (type, external)
    private
@@ -33,7 +33,7 @@ module scene_parts
 
    !> Where a group of the scene begins, for sentences about it.
    type :: scene_item_t
-      character(LENGTH) :: file = ''
+      character(PATH_LENGTH) :: file = ''
       integer :: line = 0
    end type scene_item_t
 

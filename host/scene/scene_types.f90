@@ -3,14 +3,14 @@
 !> (scene_keys lists who does), which resolves its names.
 module scene_types
    use namelists, only: group_t
-   use texts, only: LENGTH
+   use texts, only: LENGTH, PATH_LENGTH
    use scene_parts, only: scene_item_t, FINGERPRINT_LENGTH
    implicit none (type, external)
    private
    public :: scene_t, item_of, groups_named
 
    type :: scene_t
-      character(LENGTH) :: file = ''
+      character(PATH_LENGTH) :: file = ''
       character(FINGERPRINT_LENGTH) :: fingerprint = ''
       integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
       type(group_t), allocatable :: as_read(:)

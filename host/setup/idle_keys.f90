@@ -30,7 +30,10 @@ contains
                             ''' of &scene has no effect: the scene does not have it.')
       end do
       do g = 1, size(scene%as_read)
-         if (is_law(scene%as_read(g)%name)) cycle
+         if (is_law(scene%as_read(g)%name)) then
+            call judge_law(scene, model, scene%as_read(g))
+            cycle
+         end if
          do i = 1, scene%as_read(g)%count
             k = place_of(keys, scene%as_read(g)%name, scene%as_read(g)%entries(i)%key)
             if (k > 0) call judge(keys, keys(k), model, scene%as_read(g))
@@ -81,6 +84,46 @@ contains
       if (why /= '') call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'// &
                                         trim(group%name)//' has no effect'//why//'.')
    end subroutine judge
+
+   !> Keys of a law that act with suction, in a scene without it, and a void ratio that every region replaces.
+   subroutine judge_law(scene, model, group)
+      type(scene_t), intent(in) :: scene
+      type(model_t), intent(in) :: model
+      type(group_t), intent(in) :: group
+      integer :: m, i
+
+      m = findloc(model%materials%name == name_of(group), .true., dim=1)
+      if (m == 0) return
+      associate (law => model%materials(m)%law)
+         if (.not. model%domain%with_c .and. allocated(law%suction_keys)) then
+            do i = 1, size(law%suction_keys)
+               call tell_if_given(trim(law%suction_keys(i)), ': the scene has no field p_c')
+            end do
+         end if
+         if (law%e_0 > 0.0_wp .and. replaced_everywhere()) &
+            call tell_if_given('e_0', ': every &region of the material gives void_ratio')
+      end associate
+   contains
+      subroutine tell_if_given(key, why)
+         character(*), intent(in) :: key, why
+
+         if (given(group, key)) call print_warning(at_line(group%file, line_of(group, key))//key//' of &'// &
+                                                   trim(group%name)//' has no effect'//why//'.')
+      end subroutine tell_if_given
+
+      logical function replaced_everywhere() result(everywhere)
+         character(LENGTH) :: material
+         integer :: i
+
+         everywhere = .true.
+         do i = 1, size(scene%as_read)
+            if (scene%as_read(i)%name /= 'region') cycle
+            material = ''
+            call get_text(scene%as_read(i), 'material', material)
+            if (material == name_of(group)) everywhere = everywhere .and. given(scene%as_read(i), 'void_ratio')
+         end do
+      end function replaced_everywhere
+   end subroutine judge_law
 
    !> Definitions, of a kind that keys refer to, that no key of the scene names.
    subroutine warn_of_unused_definitions(keys, scene)

@@ -3,7 +3,7 @@
  *    failing_host api FILE        saves the increment with mud_save_increment, FILE `NULL` stands for no name
  *    failing_host umat TIMES      lets umat_ fail so many times; the environment says whether that is saved
  *    failing_host threads FILE    eight threads save to one FILE: prints how many did
- *    failing_host several         lets umat_ fail in five other ways, each twice
+ *    failing_host several         lets umat_ fail in other ways, each twice
  *    failing_host crowd           eight threads let umat_ fail five times each */
 #include <math.h>
 #include <pthread.h>
@@ -47,7 +47,7 @@ static int save(const char *path, char *text, int len)
 }
 
 /* What is wrong with a call; NOTHING_ELSE: too few substeps are allowed, as with the others. */
-enum fault { NOTHING_ELSE, PROPS_H_0, PROPS_N_B, STRAIN_13, MEMORY_22, STRESS_11, FAULTS };
+enum fault { NOTHING_ELSE, PROPS_H_0, PROPS_N_B, STRAIN_13, MEMORY_22, STRESS_11, START, FAULTS };
 
 static int fail_as_umat(int element, enum fault fault)
 {
@@ -72,6 +72,10 @@ static int fail_as_umat(int element, enum fault fault)
    }
    if (fault == STRESS_11)
       stress[0] = INFINITY;
+   if (fault == START) {   /* a point without a past that is too loose to begin */
+      memset(statev, 0, sizeof statev);
+      statev[mud_index(MUD_STATEV, "void_ratio")] = 6.0;
+   }
    umat_(stress, statev, NULL, NULL, NULL, &scd, NULL, NULL, NULL, NULL, NULL, dstrain, NULL, NULL, NULL, NULL,
          &suction, &dsuction, NULL, NULL, NULL, &ntens, &nstatv, props, &nprops, NULL, NULL, &pnewdt, NULL, NULL, NULL,
          &element, &npt, NULL, NULL, &kstep, &kinc);

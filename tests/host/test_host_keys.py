@@ -70,6 +70,17 @@ def test_a_support_holds_until_it_is_released():
     near("and releases it afterwards", moved.get(1.5, 0), -1e-3)
 
 
+def test_a_support_from_the_end_of_a_stage_on_is_not_there_before():
+    # Stages of 0.1 and 0.2 s end at 0.30000000000000004 s: still the load of 12 kPa alone, over M.
+    stages = "".join(f"&stage name = '{name}' analysis = 'static' duration = {d} dt = {d} tolerance = 1e-12 /\n"
+                     for name, d in (("s2", 0.2), ("s3", 0.1)))
+    rows, _ = run(BLOCK.format(0.1, 0.1) + stages + held + "&load group = 'top' kind = 'pressure' value = 12 /\n"
+                  "&fix group = 'top' field = 'u_z' value = -2e-3 from = 0.3 /\n", "from")
+    moved = [float(row["corner.u_z"]) for row in rows[-2:]]
+    near("a support from the end of a stage on is not there before", moved[0], -1e-3)
+    near("and is there in the next stage", moved[1], -2e-3)
+
+
 def test_checkpoints_by_wall_time():
     # Wall time: shorter than any step, so that there is one after every step; the last one is whole and goes on.
     text = BLOCK.format(1, 0.25).replace("fields = 'u'", "fields = 'u' checkpoint_seconds = 1e-9") + held + \

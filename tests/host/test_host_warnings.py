@@ -212,6 +212,15 @@ def test_no_doubt_no_warning():
                                           "--check") if "counts from there" in line]
         check(f"displacements are zeroed: {keys}", len(told) == count, told)
 
+    # Times of stages add up with rounding: 0.1 + 0.2 lies above 0.3, 0.7 + 0.1 below 0.8.
+    for durations, key in (((0.1, 0.2), "from = 0.3"), ((0.7, 0.1), "until = 0.8")):
+        stages = "".join(f"&stage name = 'r{k}' analysis = 'static' duration = {d} dt = {d} zero_displacements = "
+                         f"'{'yes' if k else 'no'}' /\n" for k, d in enumerate(durations))
+        rounded = SCENE.replace("&stage name = 'load'", stages + "&stage name = 'load'")
+        told = [line for line in warnings(rounded.replace("'bottom' field = 'u_z'", "'bottom' field = 'u_z' value = "
+                                                          f"-0.001 {key}"), "--check") if "counts from there" in line]
+        check(f"displacements are zeroed where it begins or ends: {key}", told == [], told)
+
     # Water of twice the weight, whose pressure stays: without weight, or where it flows, there is no doubt.
     heavier = SCENE.replace("gravity = 9.81 /", "gravity = 9.81 gravity_history = 'g' /\n"
                             "&history name = 'g' times = 0, 1 values = 1, 2 /")
@@ -222,6 +231,30 @@ def test_no_doubt_no_warning():
         told = [line for line in warnings(heavier.replace(old, new).replace("rho_w = 1", f"rho_w = {rho}"), "--check")
                 if what in line]
         check(f"water that gets heavier: {what}", [line.count("from 1 to 2") for line in told] == [1]*words, told)
+
+
+def test_keys_of_mud_that_nothing_asks_for():
+    told = warnings(SCENE.replace("toyoura.nml'", "toyoura.nml' P_a = 7 b_1 = 2 e_0 = 0.7"), "--check")
+    for key, why in (("P_a", "the scene has no field p_c"), ("b_1", "the scene has no field p_c"),
+                     ("e_0", "every &region of the material gives void_ratio")):
+        check(f"{key} of &mud has no effect", any(f"{key} of &mud has no effect: {why}" in t for t in told), told)
+    told = warnings(SCENE.replace("toyoura.nml'", "toyoura.nml' e_0 = 0.7").replace("void_ratio = 0.8 ", ""), "--check")
+    check("e_0 is that of a region without void_ratio", told == [], told)
+
+
+def test_a_long_path_is_whole():
+    # A path of more than 256 characters: messages name it to its end, and a mesh beside the scene is looked for there.
+    folder = work
+    while len(str(folder)) < 300:
+        folder /= "d" * 40
+    folder.mkdir(parents=True)
+    (folder / "scene.nml").write_text(SCENE.replace("&mesh r = 0, 1, 2 r_cells = 1, 1 z = -2, 0 z_cells = 2 /",
+                                                    "&mesh file = 'absent.msh' /"))
+    done = subprocess.run([host, folder / "scene.nml", "--check"], capture_output=True, text=True, env=environment)
+    check("a mesh is looked for beside the scene", f"{folder}/absent.msh" in done.stderr, done.stderr)
+    (folder / "scene.nml").write_text(SCENE.replace("duration = 1", "durations = 1"))
+    done = subprocess.run([host, folder / "scene.nml", "--check"], capture_output=True, text=True, env=environment)
+    check("a message names the scene to its end", f"{folder}/scene.nml:11" in done.stderr, done.stderr)
 
 
 # Keys whose condition the program alone knows, as `:p_c` where they are declared: many in a scene, each with a reason.

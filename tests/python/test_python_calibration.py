@@ -351,6 +351,8 @@ def test_the_fit_finds_h_0_and_n_d_again():
     ranges = mud.Material(path).tested
     check("with the range of its tests", ranges["tested_e_min"] < ranges["tested_e_max"]
           and f"{ranges['tested_p_min']:.0f} to {ranges['tested_p_max']:.0f} kPa" in path.read_text(), path.read_text())
+    least = min(item.test["p"].min() for item in result.task.fitted())  # of drained compression: where it begins
+    check("which begins where the tests begin", abs(ranges["tested_p_min"] - least) <= 0.5, (ranges, least))
     done = subprocess.run([build / "drivers/mud_triax", root / "drivers/cases/undrained_e833_p100.nml",
                            "--material", path, "--output", work / "typed.csv", "--quiet"],
                           capture_output=True, text=True)

@@ -20,7 +20,7 @@ import mud  # noqa: E402
 from mud.calibration import Effort, answers_of, calibrate, evaluate, make_task, read_table, use_of  # noqa: E402
 from mud.calibration.command import UNFINISHED, main  # noqa: E402
 from mud.calibration.ensemble import Ensemble, _weights, quantile  # noqa: E402
-from mud.calibration.fit import PRIOR, Fit, Minimum, posterior, trial_sets  # noqa: E402
+from mud.calibration.fit import NOISE, PRIOR, Fit, Minimum, observations, posterior, spread_of, trial_sets  # noqa: E402
 from mud.calibration.screen import screen  # noqa: E402
 from mud.calibration.simulation import SETTINGS  # noqa: E402
 from mud.calibration.soundness import disagreeing, unloading  # noqa: E402
@@ -117,6 +117,10 @@ def test_nine_tests_that_cannot_run_are_no_fit():
         all(findings[name].low <= truth[name] <= findings[name].high for name in ("h_0", "n_d")),
         [(findings[name].low, findings[name].high) for name in ("h_0", "n_d")],
     )
+    # The tests are the model's own: what is left over is the error of its simulations.
+    check("and are narrow where the tests are without error",
+          all(findings[name].high / findings[name].low < 1.1 for name in ("h_0", "n_d")),
+          [(findings[name].low, findings[name].high) for name in ("h_0", "n_d")])
     check("every variable of the ensemble is within its bounds", all(
         f.variable.lower <= m[f.variable.name] <= f.variable.upper
         for m in result.ensemble.members for f in result.diagnosis.findings if f.fitted))
@@ -255,3 +259,94 @@ def test_the_posterior_is_that_of_prior_and_data():
     ends = [Minimum({"h_0": value}, 1.0, np.eye(1), 1) for value in (1.0, 9.0)]
     told = Ensemble([{"h_0": 5.0}, {"h_0": 5.1}], np.full(2, 0.5), 2.0, 1.0, {}, {}).interval("h_0", ends)
     check("an interval holds every minimum that is told", told == (1.0, 9.0), told)
+
+
+def linear(random, errors, fitted=6, rows=40):
+    """A linear problem of as many curves as errors has: matrix, measurement and the true shares.
+
+    errors : (curves, rows) in standard deviations."""
+    along = np.linspace(0, 1, rows)[:, None] ** np.arange(fitted)
+    matrix = np.concatenate([8 * along * random.standard_normal(fitted) / np.sqrt(rows) for _ in errors])
+    shares = random.uniform(0.2, 0.8, fitted)
+    return matrix, matrix @ shares + errors.ravel() / np.sqrt(rows), shares
+
+
+def solved(matrix, measured, curves):
+    """Least squares: shares, their deviations as a fit tells them, and its residuals by curve."""
+    shares = np.linalg.lstsq(matrix, measured, rcond=None)[0]
+    left = np.split(matrix @ shares - measured, curves)
+    return shares, np.sqrt(np.diag(posterior(matrix, spread_of(left, len(shares))))), left
+
+
+def test_deviations_of_a_linear_fit_are_those_of_the_closed_form():
+    # White noise of deviation s in every row of n: a residual is row/sqrt(n), so the covariance is s^2/n (A^T A)^-1.
+    # The mean of 100 estimates of s^2 with 314 degrees of freedom is right to 1 %; counting the rows loses 3 % at most.
+    random = np.random.default_rng(5)
+    for s in (0.2, 1.0, 4.0):
+        ratios = []
+        for _ in range(100):
+            problem = linear(random, s * random.standard_normal((8, 40)))
+            _, deviations, _ = solved(*problem[:2], 8)
+            exact = np.linalg.inv(40 / s**2 * problem[0].T @ problem[0] + np.eye(6) / PRIOR**2)
+            ratios.append(deviations / np.sqrt(np.diag(exact)))
+        check(f"deviations of a linear fit to noise of {s:g} scatters are those of the closed form",
+              abs(np.mean(ratios) - 1) < 0.04, np.mean(ratios))
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say():
+    # 1800 intervals of 95 %, six of a fit together: the share that holds the truth scatters by less than 1.3 %.
+    for word, make, least, most in (
+        ("noise", lambda random: 0.3 * random.standard_normal((8, 40)), 0.93, 0.97),
+        ("a misfit of whole curves", lambda random: 3 * np.repeat(random.standard_normal((8, 1)), 40, 1), 0.93, 1.0),
+    ):
+        random, held = np.random.default_rng(3), []
+        for _ in range(300):
+            matrix, measured, shares = linear(random, make(random), 4 if word != "noise" else 6)
+            found, deviations, _ = solved(matrix, measured, 8)
+            held += list(np.abs(found - shares) < 1.96 * deviations)
+        check(f"intervals of 95 % hold the truth as often under {word}", least < np.mean(held) < most, np.mean(held))
+
+
+def test_rows_whose_errors_follow_each_other_count_once():
+    random = np.random.default_rng(2)
+    whole, noise = [np.full(40, z) for z in (1.0, -2.0, 0.5)], list(random.standard_normal((3, 40)))
+    # The autocorrelation of a constant falls linearly with the lag; its sum is the number of rows.
+    check("a curve that is missed by the same everywhere is one observation", abs(observations(whole) - 3) < 1e-9)
+    check("noise has as many observations as rows", observations(noise) > 0.8 * 120, observations(noise))
+    check("without an observation left over the told scatter counts", spread_of([np.full(2, 1e-6)], 5) >= 1.0 / 2)
+    check("a perfect fit keeps the error of the simulations", spread_of([np.zeros(40)] * 2, 3) == NOISE**2)
+
+
+def test_intervals_of_a_retention_curve_hold_the_truth():
+    # A whole fit, forty times: S_w with noise of half of the scatter. Of 120 intervals of 95 % at least 104 hold the
+    # truth (binomial: fewer once in a thousand).
+    suctions, widths, held = np.geomspace(0.5, 200.0, 40), [], []
+    fixed = {"Omega": truth["Omega"], "S_max": truth["S_max"], "S_min": truth["S_min"]}
+    for seed in range(40 if not light else 4):
+        random = np.random.default_rng(seed)
+        noisy = truth.saturation(suctions, 0.8) + 0.01 * random.standard_normal(40)
+        (work / "noisy.csv").write_text(
+            "suction_kPa,S_w,e\n"
+            + "".join(f"{s},{S!r},0.8\n" for s, S in zip(suctions, np.clip(noisy, 0, 1).tolist()))
+        )
+        task = make_task("noisy", [{"file": work / "noisy.csv", "kind": "retention"}], start="karlsruhe", known=fixed)
+        told = calibrate(task, Effort(samples=4, starts=1, joint=20, members=0), 1, None).diagnosis
+        for f in told.findings:
+            if f.fitted:
+                held.append(f.low <= truth[f.variable.name] <= f.high)
+                widths.append(np.log(f.high / f.low))
+    check("intervals of a retention curve hold the truth", np.mean(held) > 0.86, np.mean(held))
+    check("and are not wider than the noise makes them", len(held) >= 12 and np.median(widths) < 0.5, np.median(widths))
+
+
+def test_a_quiet_fit_says_nothing_of_the_sets_that_it_tries():
+    # A void ratio of 1.9 lies far above every compression line: the library remarks on such a start.
+    (work / "loose.csv").write_text("p_kPa,e,G_max_kPa\n100,1.9,60000\n200,1.9,90000\n300,1.9,100000\n")
+    words = ["--name", "loose", "--stiffness", "loose.csv", "--samples", "4", "--starts", "1", "--evaluations", "2"]
+    words += ["--members", "0", "--workers", "1", "--output", "l"]
+    command = [sys.executable, "-m", "mud.calibration.command", *words]
+    environment = {**os.environ, "PYTHONPATH": str(root / "python")}
+    told = [subprocess.run([*command, *more], cwd=work, env=environment, capture_output=True, text=True).stderr
+            for more in ([], ["--quiet"])]
+    check("a fit lets the library remark on a start", "remark of mud_init" in told[0], told[0])
+    check("a quiet fit says nothing of the sets that it tries", told[1] == "", told[1])

@@ -5,15 +5,17 @@ module mud_save
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_size_t, c_associated, &
       c_f_pointer
    use mud_c_api, only: VERSION
-   use mud_host_increment, only: host_increment, suction_change
+   use mud_host_increment, only: host_increment, never_began, suction_change
    use mud_kernel, only: report_t, output_t
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
    use mud_params, only: options_of
    use mud_prepared, only: prepared_t, find_prepared
-   use mud_registry, only: NPROPS, P_TANGENT, PROPERTIES, COMPONENTS, S_SUCTION, statev_name
+   use mud_registry, only: NPROPS, P_TANGENT, P_E_0, PROPERTIES, COMPONENTS, S_LAYOUT, S_VOID_RATIO, &
+      S_SATURATION, S_SUCTION, statev_name
    use mud_state, only: statev_size
-   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
+   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_STATE, &
+      MUD_NOT_WRITTEN
    use mud_to_host, only: put, get
    implicit none (type, external)
    private
@@ -103,6 +105,7 @@ contains
       type(report_t), intent(in) :: report
       character(*), intent(out) :: problem   !< Blank if the file is written.
       type(c_ptr) :: file
+      real(wp) :: ratio
       character(80) :: digits
       logical :: good, taken
       integer :: i, n
@@ -141,10 +144,17 @@ contains
       do i = 1, 6
          call line('      '//trim(bits(-stress(i)))//'   ! '//COMPONENTS(i))
       end do
-      call line('   state_variables =')
-      do i = 1, n
-         call line('      '//trim(bits(statev(i)))//'   ! '//trim(statev_name(i)))
-      end do
+      if (.not. never_began(statev) .or. (report%status == MUD_BAD_STATE .and. report%index == S_LAYOUT)) then
+         call line('   state_variables =')
+         do i = 1, n
+            call line('      '//trim(bits(statev(i)))//'   ! '//trim(statev_name(i)))
+         end do
+      else   ! The start was refused, and is made once more.
+         ratio = statev(S_VOID_RATIO)
+         if (.not. abs(ratio) > 0.0_wp) ratio = props(P_E_0)
+         call line('   void_ratio = '//bits(ratio))
+         if (abs(statev(S_SATURATION)) > 0.0_wp) call line('   saturation = '//bits(statev(S_SATURATION)))
+      end if
       call line('/')
       call line('&stage')
       call line('   control = ''linear''')

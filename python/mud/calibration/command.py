@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import os
 import pathlib
 import sys
 import tempfile
@@ -73,7 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--members", type=int, default=Effort.members, help=f"sets of the ensemble, 0: none (default {Effort.members})"
     )
-    parser.add_argument("--quiet", action="store_true", help="no progress")
+    parser.add_argument("--quiet", action="store_true", help="no progress, and no remarks of the library on sets that are tried")
     return parser
 
 
@@ -94,6 +96,27 @@ def main(words: list[str] | None = None) -> int:
     """Exit code 0: done; 2: what was given is refused; 130: interrupted."""
     parser = _parser()
     options = parser.parse_args(words)
+    if options.quiet:
+        with _silent_library():
+            return _run(parser, options)
+    return _run(parser, options)
+
+
+@contextlib.contextmanager
+def _silent_library():
+    """The library says nothing on standard error, nor does that of a worker that begins meanwhile."""
+    before = os.environ.get("MUD_MESSAGES")
+    os.environ["MUD_MESSAGES"] = "off"
+    try:
+        yield
+    finally:
+        del os.environ["MUD_MESSAGES"]
+        if before is not None:
+            os.environ["MUD_MESSAGES"] = before
+
+
+def _run(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:
+    """A command whose words are understood; its exit code."""
     tables = [{"file": file, "kind": kind} for kind in NEEDS for file in getattr(options, kind.replace("-", "_"))]
     if options.first is not None:
         tables = [{**t, "first": options.first} if t["kind"] in ("oedometer", "isotropic") else t for t in tables]

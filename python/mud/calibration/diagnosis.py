@@ -11,7 +11,7 @@ import numpy as np
 
 from ..material import Material
 from .ensemble import Ensemble
-from .fit import Fit, posterior, spread_of
+from .fit import Fit, posterior
 from .misfit import scaled
 from .simulation import SETTINGS, Answer
 from .soundness import disagreeing, unloading
@@ -85,8 +85,11 @@ def diagnose(
     jacobian = _central(fit, both, everything)
     curves = fit.curves
     n = len(fit.variables)
-    residual = fit.evaluator.residuals([everything])[0]
-    covariance = posterior(jacobian[:, :n], spread_of(residual, curves))
+    covariance = np.zeros((n, n))
+    for part in fit.parts:
+        mine = [i for i, v in enumerate(fit.variables) if v in part.variables]
+        variance = fit.variance(fit.evaluator.residuals([everything], part.numbers)[0], part)
+        covariance[np.ix_(mine, mine)] = posterior(jacobian[:, mine], variance)
     deviations = np.sqrt(np.diag(covariance))
     findings = []
     for i, variable in enumerate(both):

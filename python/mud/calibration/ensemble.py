@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from .fit import PRIOR, Fit, Minimum, posterior, spread_of
+from .fit import PRIOR, Fit, Minimum, posterior
 from .misfit import scaled
 from .simulation import Answer
 from .task import Item
@@ -77,7 +77,7 @@ def make_ensemble(fit: Fit, values: Mapping[str, float], answers: Mapping[str, A
     prior = np.array([v.share(start_of(v.name, fit.task.base)) for v in variables])
     best = fit.evaluator.residuals([values], part.numbers)[0]
     curves = sum(len(fit.evaluator.items[i].use.scatter) for i in part.numbers)
-    variance = spread_of(best, curves)
+    variance = fit.variance(best, part)
     centres = np.array([[v.share(m.values[v.name]) for v in variables] for m in minima])
     beyond = [fit.jacobian(kept, values, part.numbers)] if kept else []
     spreads = [posterior(np.hstack([m.jacobian, *beyond]), variance) for m in minima]

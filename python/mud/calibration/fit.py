@@ -21,8 +21,10 @@ GROUP_EVALUATIONS = 4  # least squares of one group: it only has to come near
 FLAT = 1e-5  # change of the misfit, as a share, at which least squares end: valleys are long and flat
 THIN = 3  # rows of the search: every third
 FEW = 8  # tests of the search and of the groups, spread over the kinds
+SIDE = 0.975  # quantile at which an interval of 95 % ends
 PRIOR = 1.0  # standard deviation of the prior in the width of the bounds
 PULL = 0.1  # residual of a variable that is the width of its bounds away from its prior: less than a curve notices
+NOISE = 1e-2  # residual of a curve that the errors of the simulations may leave, standard deviations
 SAID_NOTHING = 0.45  # posterior deviation, as a share of the bounds, beyond which the tests have said nothing: theirs is 0.5
 NO_WORSE = 1.01  # and the misfit must not grow by more than this factor where such a parameter keeps its prior
 SPREAD = 0.3  # share of the bounds over which the search moves the critical state about its regression
@@ -226,7 +228,7 @@ class Fit:
             ]
         tried.sort(key=lambda m: (m.cost, m.start))
         self.history.append((f"{word}together", tried[0].cost))
-        tried = self._keep_prior(part, tried, word)
+        tried = self._keep_prior(part, self._less_pulled(part, tried, word), word)
         if any(v.group != "retention" for v in part.variables) or len(self.parts) == 1:
             self.minima = self._apart(part, [m for m in tried if m.cost <= NEARLY * tried[0].cost])
         return tried[0].values
@@ -239,12 +241,33 @@ class Fit:
                 found.append(m)
         return found
 
+    def _less_pulled(self, part: Part, minima: list[Minimum], word: str) -> list[Minimum]:
+        """Where curves lie so close to the tests that the pull of the fit is stronger than the prior, minima are fitted again
+        with the pull of the prior, so that they do not lie beside their own intervals."""
+        best = minima[0]
+        pull = np.sqrt(self.variance(self.evaluator.residuals([best.values], part.numbers)[0], part)) / PRIOR
+        if pull >= PULL:
+            return minima
+        again = [
+            dataclasses.replace(
+                self._least_squares(
+                    part.variables, m.values, self.effort.joint, f"{word}start {m.start}, closer", part.numbers, 1, pull
+                ),
+                start=m.start,
+            )
+            for m in minima
+            if m.cost <= NEARLY * best.cost
+        ]
+        again.sort(key=lambda m: (m.cost, m.start))
+        self.history.append((f"{word}with less pull to the prior", again[0].cost))
+        return again
+
     def _keep_prior(self, part: Part, minima: list[Minimum], word: str) -> list[Minimum]:
         """Gives those variables their prior back about which the tests say nothing, and fits the others again. One after the
         other: two that are only determined together stay. If the misfit grows by it, nothing changes."""
         best = minima[0]
         residual = self.evaluator.residuals([best.values], part.numbers, 1)[0]
-        variance = spread_of(residual, self._curves(part.numbers))
+        variance = self.variance(residual, part)
         rest, jacobian, kept = list(part.variables), best.jacobian, []
         while len(rest) > 1:
             deviations = np.sqrt(np.diag(posterior(jacobian, variance)))
@@ -259,7 +282,13 @@ class Fit:
         again = [
             dataclasses.replace(
                 self._least_squares(
-                    rest, {**m.values, **prior}, self.effort.joint, f"{word}start {m.start}, again", part.numbers, 1
+                    rest,
+                    {**m.values, **prior},
+                    self.effort.joint,
+                    f"{word}start {m.start}, again",
+                    part.numbers,
+                    1,
+                    min(PULL, np.sqrt(variance) / PRIOR),
                 ),
                 start=m.start,
             )
@@ -316,12 +345,13 @@ class Fit:
         what: str,
         tests: Sequence[int],
         thin: int,
+        strength: float = PULL,
     ) -> Minimum:
         """Least squares in some variables on some tests and rows, with a weak pull to the prior of the variables."""
         from scipy.optimize import least_squares
 
         prior = np.array([v.share(start_of(v.name, self.task.base)) for v in mine])
-        pull = PULL * np.eye(len(mine))
+        pull = strength * np.eye(len(mine))
         seen = [np.nan]  # the misfit of the last evaluation, for the progress
 
         def at(shares: np.ndarray) -> dict[str, float]:
@@ -366,14 +396,43 @@ class Fit:
     def _rms(self, residual: np.ndarray, tests: Sequence[int]) -> float:
         return rms(residual, self._curves(tests))
 
+    def variance(self, residual: np.ndarray, part: Part) -> float:
+        """``spread_of`` a part. residual : of its tests."""
+        items = [self.evaluator.items[i] for i in part.numbers]
+        ends = np.cumsum([len(item.use.rows) for item in items for _ in item.use.scatter])
+        return spread_of(np.split(residual, ends)[:-1], len(part.variables))
+
     def _tell(self, what: str, sets: int, cost: float, tests: Sequence[int]) -> None:
         self.progress.step(what, sets * len(tests) / len(self.evaluator.items), cost)
 
 
-def spread_of(residual: np.ndarray, curves: int) -> float:
-    """Variance of what a curve is missed by: what the model cannot do is in it, and a curve counts as one observation, because
-    the errors of a model follow each other along it. At least that of the measurement."""
-    return max(float(residual @ residual) / curves, 1.0)
+def observations(curves: Sequence[np.ndarray]) -> float:
+    """Independent observations in curves of residuals: their rows over the sum of their common autocorrelation up to the lag
+    at which it is not positive any more. Errors of a model follow each other along a curve, which then counts once; errors
+    of a measurement do not, and then every row counts."""
+    total, time = sum(float(c @ c) for c in curves), 1.0
+    for lag in range(1, max(map(len, curves))):
+        together = sum(float(c[lag:] @ c[:-lag]) for c in curves)
+        if not together > 0:
+            break
+        time += 2 * together / total
+    return sum(max(1.0, len(c) / time) for c in curves)
+
+
+def spread_of(curves: Sequence[np.ndarray], variables: int) -> float:
+    """Variance that belongs to a sum of squares over curves: RSS/(n - p) of n independent observations and p fitted variables,
+    wider by Student's t. Where the fit leaves less than one observation over, the scatter that was told counts, or a larger
+    misfit, with half of the observations used up.
+
+    curves : residuals in standard deviations over the root of the number of rows.
+    """
+    from scipy.stats import norm, t
+
+    squares, n = sum(float(c @ c) for c in curves), observations(curves)
+    most = 2 * max(squares, len(curves)) / n
+    if n >= variables + 1:
+        most = min(most, squares / (n - variables) * (t.ppf(SIDE, n - variables) / norm.ppf(SIDE)) ** 2)
+    return max(float(most), NOISE**2)
 
 
 def posterior(jacobian: np.ndarray, variance: float) -> np.ndarray:

@@ -66,12 +66,16 @@ def _range_of_tests(result: Calibration) -> list[str]:
     stressed = [i for i in mechanical if "p" in i.test or "sigma_a" in i.test]
     ratios = [i for i in mechanical if "e" in i.test]
     if stressed and ratios:
-        stress = np.concatenate(
-            [i.test["p" if "p" in i.test else "sigma_a"][i.use.rows] for i in stressed]
-        )
-        ratio = np.concatenate([i.test["e"][i.use.rows] for i in ratios])
+        stress = np.concatenate([i.test["p" if "p" in i.test else "sigma_a"][_passed(i)] for i in stressed])
+        ratio = np.concatenate([i.test["e"][_passed(i)] for i in ratios])
         return [f"{ratio.min():.3f}", f"{ratio.max():.3f}", f"{stress.min():.0f}", f"{stress.max():.0f}"]
     return []
+
+
+def _passed(item: Item) -> np.ndarray:
+    """Rows of a test that the model passes: those that count, and where a curve begins, which is given and so does not count."""
+    begins = [item.use.start] if item.test.kind in ("drained", "undrained", "oedometer", "isotropic") else []
+    return np.concatenate([begins, item.use.rows]).astype(int)
 
 
 def _range_text(result: Calibration) -> str:
@@ -287,8 +291,9 @@ def _fitted_sections(result: Calibration) -> list[str]:
             if ensemble
             else "Intervals come from the Jacobian at the optimum. "
         )
-        + "A curve counts as one observation, whose variance is that of the misfit: the errors of a model follow each other "
-        f"along a curve. The prior of a parameter is its start between its bounds, with a deviation of {PRIOR:g} times their width.",
+        + "Variance of the misfit: over the independent observations of the curves less the fitted parameters. Rows whose errors "
+        "follow each other, as those of a model do along a curve, are one observation together. "
+        f"The prior of a parameter is its start between its bounds, with a deviation of {PRIOR:g} times their width.",
         "",
     ]
     if len(result.minima) > 1:
