@@ -20,8 +20,8 @@ module mud_point
    use mud_status, only: fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, end_substep, end_phase
-   use mud_tensor, only: is_finite
-   use mud_transitions, only: begin_substep
+   use mud_tensor, only: LANES, all_within
+   use mud_transitions, only: take_last_rate, begin_substep
    implicit none (type, external)
    private
    public :: begin_update, end_update, give_tangent
@@ -62,6 +62,7 @@ contains
          call begin_phase(par, step, it)
          if (follows) call follow_phase(par, it%inc, cuts(i), sens)
          do while (it%reached < it%inc%to)
+            call take_last_rate(it)
             call begin_substep(par, it)
             call look_for_stiffness(par, it%inc%to - it%reached, max(step%h, par%h_min), it%trial, stiff)
             if (stiff) call make_implicit(par, it%inc, it%trial)
@@ -93,7 +94,7 @@ contains
       if (tangent == TANGENT_NONE) return
       call elastic_blocks(par, it%state, blocks)
       slope = tangent == TANGENT_CONSISTENT .and. moved
-      if (slope) slope = is_slope(sens%y(1:7, 1:6), maxval(abs(blocks%dsig_deps)))
+      if (slope) slope = is_slope(sens%y, blocks%dsig_deps(1, 1))   ! of an isotropic stiffness the largest
       if (slope) then
          blocks%dsig_deps = transpose(sens%y(1:6, 1:6))
          blocks%dsig_dpc = sens%y(7, 1:6)
@@ -105,12 +106,19 @@ contains
    !> Whether derivatives of the stress are slopes: those of explicit substeps at the limit of their stability grow from
    !> one to the next, up to 1e108 kPa, while error control keeps the stress. docs/theory/integration.md section 5.3.
    pure logical function is_slope(y, stiffness)
-      real(wp), intent(in) :: y(:, :)     !< By strain [kPa] and, last, by suction [-]. (directions, stresses)
+      real(wp), intent(in) :: y(LANES, 6) !< Of stresses by strain [kPa], by suction [-], and of an idle direction.
       real(wp), intent(in) :: stiffness   !< Largest elastic one [kPa].
       real(wp), parameter :: STEEPEST = 1.0e4_wp   !< The stress of an increment changes the stiffness by less.
+      real(wp) :: largest(LANES)
+      integer :: j
 
-      is_slope = all(is_finite(y))
-      if (is_slope) is_slope = maxval(abs(y(:6, :))) <= STEEPEST*stiffness .and. maxval(abs(y(7, :))) <= STEEPEST
+      largest(1:6) = STEEPEST*stiffness
+      largest(7) = STEEPEST
+      largest(8:) = huge(1.0_wp)
+      is_slope = .true.
+      do j = 1, 6
+         is_slope = is_slope .and. all_within(LANES, y(:, j), largest)
+      end do
    end function is_slope
 
    !> Checks the increment, and lifts a stress below its limit; nothing is integrated yet.

@@ -25,7 +25,7 @@ module mud_lanes
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, plan_attempt, judge, end_substep, end_phase
    use mud_transient, only: begin_transient, take_far, take_half, half_way, without_turn
-   use mud_transitions, only: begin_substep
+   use mud_transitions, only: take_last_rate, begin_substep
    use mud_trial, only: begin_stage, end_stage, end_stages
    use mud_vector, only: NY, Y_Z, Y_Z_END, WIDTH
    implicit none (type, external)
@@ -139,6 +139,7 @@ contains
       do j = 1, n
          of(j)%asks = .false.
          if (.not. of(j)%together) cycle
+         call take_last_rate(it(j))
          call begin_mechanism(par, it(j)%state, it(j)%inc, it(j)%trial, it(j)%known)
          call take_increment(j, it(j)%inc, q)
          ! rates of one point placed an event, and they alone are sure to be on the same side of it
@@ -152,8 +153,7 @@ contains
       if (any(of(1:n)%asks)) then
          call find_rates(par, q)
          do j = 1, n
-            if (of(j)%asks) call give_rate(par, j, .false., q, it(j)%trial%w(it(j)%inc%scheme%stages), it(j)%counters, &
-                                           it(j)%known)
+            if (of(j)%asks) call give_rate(par, j, .false., q, it(j)%trial%w(1), it(j)%counters, it(j)%known)
          end do
       end if
       do j = 1, n
