@@ -46,7 +46,8 @@ function(mud_copy_of_core name level bits parts options)
    set(unit ${CMAKE_CURRENT_BINARY_DIR}/mud_${name}_${level}.F90)
    file(CONFIGURE OUTPUT ${unit} CONTENT "${includes}" @ONLY)
    list(TRANSFORM parts REPLACE ".*/(mud_([a-z_]+))[.]f90" "\\1=mud_of_${name}_${level}_\\2" OUTPUT_VARIABLE names)
-   list(APPEND names mud_points_of_level=mud_lane_points_${level} mud_find_rates=mud_find_rates_${level})
+   list(APPEND names mud_points_of_level=mud_lane_points_${level} mud_find_rates=mud_find_rates_${level}
+      mud_find_ends=mud_find_ends_${level})
    list(TRANSFORM parts PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
    set_source_files_properties(${unit} PROPERTIES OBJECT_DEPENDS "${parts}" COMPILE_DEFINITIONS "${names}"
       COMPILE_OPTIONS "-march=x86-64-${level};-mprefer-vector-width=${bits};${options}")

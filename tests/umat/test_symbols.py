@@ -43,7 +43,7 @@ def promised():
 # By these the copies of the core for newer processors (umat/lanes) and their door find each other, and the functions
 # of mud_tables.c the door of MFront.
 INSIDE = {"mud_lane_points", "mud_lane_points_v3", "mud_lane_points_v4", "mud_find_rates_v3", "mud_find_rates_v4",
-          "mud_fetch", "mud_behaviour"}
+          "mud_find_ends_v3", "mud_find_ends_v4", "mud_fetch", "mud_behaviour"}
 # What MGIS looks up; test_mfront_symbols knows each of them.
 OF_MFRONT = re.compile(r"MUD_(StressSaturation_)?[A-Za-z_]+$")
 

@@ -3,7 +3,7 @@
 module mud_batch
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer, c_loc
    use mud_host_increment, only: host_increment, kind_of, is_present, is_total
-   use mud_kernel, only: report_t, output_t, kernel_begin, failed_report
+   use mud_kernel, only: report_t, output_t, kernel_begin, failed_report, copy_statev
    use mud_kinds, only: wp
    use mud_once, only: may_use_threads
    use mud_params, only: params_t
@@ -360,17 +360,25 @@ contains
 
       number = j - 1
       call remark_on_void_ratio(output%statev, place_t('mud_update_points', point=c_loc(number)))
-      if (associated(arrays%stress1)) arrays%stress1(:, j) = output%stress
-      if (associated(arrays%statev1)) arrays%statev1(1:output%n_statev, j) = &
-         output%statev(1:output%n_statev)
+      if (associated(arrays%stress1)) call give(6, output%stress, arrays%stress1(:, j))
+      if (associated(arrays%statev1)) call copy_statev(output%n_statev, output%statev, arrays%statev1(:, j))
       if (output%has_tangent) then
-         if (associated(arrays%c)) arrays%c(:, :, j) = output%dsig_deps
-         if (associated(arrays%c_pc)) arrays%c_pc(:, j) = output%dsig_dpc
+         if (associated(arrays%c)) call give(36, output%dsig_deps, arrays%c(:, :, j))
+         if (associated(arrays%c_pc)) call give(6, output%dsig_dpc, arrays%c_pc(:, j))
       end if
-      if (associated(arrays%sw_e)) arrays%sw_e(:, j) = output%dsw_deps
+      if (associated(arrays%sw_e)) call give(6, output%dsw_deps, arrays%sw_e(:, j))
       if (associated(arrays%sw_pc)) arrays%sw_pc(j) = output%dsw_dpc
       if (associated(arrays%s_w)) arrays%s_w(j) = output%statev(S_SATURATION)
    end subroutine give_results
+
+   !> Numbers to their place, most at once where their count is known.
+   pure subroutine give(n, from, to)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: from(n)
+      real(wp), intent(out) :: to(n)
+
+      to = from
+   end subroutine give
 
    !> S_w and its slopes of point j at another suction.
    subroutine retain_point(par, arrays, j, report)

@@ -20,11 +20,11 @@ module mud_point
    use mud_status, only: fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, end_substep, end_phase
-   use mud_tensor, only: is_finite
-   use mud_transitions, only: begin_substep
+   use mud_tensor, only: LANES, all_within
+   use mud_transitions, only: take_last_rate, begin_substep
    implicit none (type, external)
    private
-   public :: begin_update, end_update, give_tangent
+   public :: begin_update, end_update, end_way, end_saturation, give_tangent
    public :: update_point, TANGENT_NONE, TANGENT_ELASTIC, TANGENT_CONTINUUM, TANGENT_CONSISTENT
 
    integer, parameter :: TANGENT_NONE = 0, TANGENT_ELASTIC = 1, TANGENT_CONTINUUM = 2, TANGENT_CONSISTENT = 3
@@ -62,6 +62,7 @@ contains
          call begin_phase(par, step, it)
          if (follows) call follow_phase(par, it%inc, cuts(i), sens)
          do while (it%reached < it%inc%to)
+            call take_last_rate(it)
             call begin_substep(par, it)
             call look_for_stiffness(par, it%inc%to - it%reached, max(step%h, par%h_min), it%trial, stiff)
             if (stiff) call make_implicit(par, it%inc, it%trial)
@@ -77,6 +78,7 @@ contains
          if (follows) call follow_turn(course%with_increment, sens)
       end do
       call end_update(par, course, it, blocks)
+      if (tangent /= TANGENT_NONE) call elastic_blocks(par, it%state, blocks)
       call give_tangent(par, tangent, n > 0, it, sens, blocks)
    end subroutine update_point
 
@@ -87,13 +89,12 @@ contains
       logical, intent(in) :: moved               !< There was an increment.
       type(integration_t), intent(in) :: it
       type(sensitivity_t), intent(in) :: sens    !< followed for a consistent one
-      type(blocks_t), intent(inout) :: blocks
+      type(blocks_t), intent(inout) :: blocks   !< the elastic ones
       logical :: slope
 
       if (tangent == TANGENT_NONE) return
-      call elastic_blocks(par, it%state, blocks)
       slope = tangent == TANGENT_CONSISTENT .and. moved
-      if (slope) slope = is_slope(sens%y(1:7, 1:6), maxval(abs(blocks%dsig_deps)))
+      if (slope) slope = is_slope(sens%y, blocks%dsig_deps(1, 1))   ! of an isotropic stiffness the largest
       if (slope) then
          blocks%dsig_deps = transpose(sens%y(1:6, 1:6))
          blocks%dsig_dpc = sens%y(7, 1:6)
@@ -105,12 +106,15 @@ contains
    !> Whether derivatives of the stress are slopes: those of explicit substeps at the limit of their stability grow from
    !> one to the next, up to 1e108 kPa, while error control keeps the stress. docs/theory/integration.md section 5.3.
    pure logical function is_slope(y, stiffness)
-      real(wp), intent(in) :: y(:, :)     !< By strain [kPa] and, last, by suction [-]. (directions, stresses)
+      real(wp), intent(in) :: y(LANES, 6) !< Of stresses by strain [kPa], by suction [-], and of an idle direction.
       real(wp), intent(in) :: stiffness   !< Largest elastic one [kPa].
       real(wp), parameter :: STEEPEST = 1.0e4_wp   !< The stress of an increment changes the stiffness by less.
+      real(wp) :: largest(LANES, 6)
 
-      is_slope = all(is_finite(y))
-      if (is_slope) is_slope = maxval(abs(y(:6, :))) <= STEEPEST*stiffness .and. maxval(abs(y(7, :))) <= STEEPEST
+      largest(1:6, :) = STEEPEST*stiffness
+      largest(7, :) = STEEPEST
+      largest(8:, :) = huge(1.0_wp)
+      is_slope = all_within(size(y), y, largest)
    end function is_slope
 
    !> Checks the increment, and lifts a stress below its limit; nothing is integrated yet.
@@ -148,17 +152,37 @@ contains
       type(saturation_t) :: sat
       real(wp) :: with_turn(2)
 
-      it%reached = 1.0_wp
+      call end_way(par, course, it, with_turn)
       if (it%size > 0.0_wp .and. it%inc%rho > 0.0_wp) it%state%from_centre = end_in_domain(it%inc)
+      call finish_state(par, it%inc%suction, it%state, sat)
+      call end_saturation(sat, with_turn, it, blocks)
+   end subroutine end_update
+
+   !> Void ratio and suction at the end of the increment, and the branch of S_w.
+   pure subroutine end_way(par, course, it, with_turn)
+      type(params_t), intent(in) :: par
+      type(course_t), intent(in) :: course
+      type(integration_t), intent(inout) :: it
+      real(wp), intent(out) :: with_turn(2)   !< of end_course
+
+      it%reached = 1.0_wp
       it%state%e = void_ratio_at(it%inc, 1.0_wp)
       it%state%p_c = suction_at(it%inc, 1.0_wp)
       call end_course(it%inc%way_t, course, it%state%s_w, it%state%turns, it%inc%suction%retention_t, with_turn)
       it%inc%suction%bonds = par%suction%bonds   ! the phases are over
-      call finish_state(par, it%inc%suction, it%state, sat)
+   end subroutine end_way
+
+   !> The slopes of S_w at the end of the increment, where it has the saturation sat.
+   pure subroutine end_saturation(sat, with_turn, it, blocks)
+      type(saturation_t), intent(in) :: sat
+      real(wp), intent(in) :: with_turn(2)
+      type(integration_t), intent(inout) :: it
+      type(blocks_t), intent(inout) :: blocks
+
       blocks%dsw_dpc = sat%ds_dpc + with_turn(1)
       blocks%dsw_dev = -(1.0_wp + it%state%e)*sat%ds_de + with_turn(2)
       if (has_tension(it%state%sigma)) it%counters%tensile = 1
-   end subroutine end_update
+   end subroutine end_saturation
 
    !> Size of an increment in units of strain [-]: suction counts with the bulk modulus. docs/theory/integration.md
    !> section 3.

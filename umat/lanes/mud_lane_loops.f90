@@ -7,22 +7,24 @@ module mud_lane_loops
    use, intrinsic :: iso_c_binding, only: c_ptr, c_f_pointer
    use mud_bonding, only: suction_law_t, bonding_t, bonding_at
    use mud_arc, only: arc_t, arc_through
+   use mud_critical_state, only: state_parameter
    use mud_direction, only: angle_t, bracket_t, PARALLEL, MAX_ITERATIONS, ALONE, half_tangent, first_guess, vanishes, &
       narrow, is_narrow, advance, evaluate_direction, slope_of_residual, company_of
    use mud_direction_equation, only: equation_of
-   use mud_increment, only: increment_t, loading_strain, void_ratio_at, add_aside
+   use mud_elastic, only: elastic_moduli
+   use mud_increment, only: increment_t, loading_strain, void_ratio_at, add_aside, end_of_pull
    use mud_kinds, only: wp
-   use mud_lane_rates, only: lanes_t, load_state, number
+   use mud_lane_rates, only: lanes_t, load_increment, load_state, number
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_rates, only: conditions_t, evaluate_point, weight_at, hardening_at, find_drive, finish_rate, &
+   use mud_rates, only: conditions_t, stress_ratio, evaluate_point, weight_at, hardening_at, find_drive, finish_rate, &
       MODE_ORDINARY
-   use mud_retention, only: curve_saturation
+   use mud_retention, only: saturation_t, curve_saturation
    use mud_tensor, only: deviator, norm, trace
    use mud_vector, only: WIDTH
    implicit none (type, external)
    private
-   public :: mud_find_rates
+   public :: mud_find_rates, mud_find_ends
 contains
    !> The rates of all lanes, lanes_t, of a material, params_t.
    subroutine mud_find_rates(material, lanes) bind(c)
@@ -34,6 +36,79 @@ contains
       call c_f_pointer(lanes, q)
       call find_rates(par, q)
    end subroutine mud_find_rates
+
+   !> The ends of the updates of all lanes, likewise.
+   subroutine mud_find_ends(material, lanes) bind(c)
+      type(c_ptr), value :: material, lanes
+      type(params_t), pointer :: par
+      type(lanes_t), pointer :: q
+
+      call c_f_pointer(material, par)
+      call c_f_pointer(lanes, q)
+      call find_ends(par, q)
+   end subroutine mud_find_ends
+
+   !> What is asked for where updates end.
+   subroutine find_ends(par, q)
+      type(params_t), intent(in) :: par
+      type(lanes_t), intent(inout) :: q
+      type(suction_law_t) :: law
+      integer :: j
+
+      law = par%suction
+      if (any(max(q%suction, q%ends_bonded) > 0.0_wp)) then
+         !$omp simd
+         do j = 1, WIDTH
+            call find_saturation(law, j, q)
+         end do
+      else
+         call find_saturation(law, 1, q)   ! all are the same
+         q%s_w = q%s_w(1)
+         q%ds_dpc = q%ds_dpc(1)
+         q%ds_de = q%ds_de(1)
+         q%bond_f = q%bond_f(1)
+      end if
+      !$omp simd
+      do j = 1, WIDTH
+         call find_end(par, j, q)
+      end do
+   end subroutine find_ends
+
+   !> Saturation and bonding where an update ends.
+   pure subroutine find_saturation(law, j, q)
+      type(suction_law_t), intent(in) :: law
+      integer, intent(in) :: j
+      type(lanes_t), intent(inout) :: q
+      type(saturation_t) :: sat
+      type(bonding_t) :: bond
+
+      sat = curve_saturation(law%retention_t, q%suction(j), q%e(j))
+      bond = bonding_at(law, sat, q%suction(j))
+      q%s_w(j) = sat%s_w
+      q%ds_dpc(j) = sat%ds_dpc
+      q%ds_de(j) = sat%ds_de
+      q%bond_f(j) = merge(bond%f, 1.0_wp, q%ends_bonded(j) > 0.5_wp)
+   end subroutine find_saturation
+
+   !> State parameter, strain from the centre of the elastic domain and elastic moduli where an update ends.
+   pure subroutine find_end(par, j, q)
+      type(params_t), intent(in) :: par
+      integer, intent(in) :: j
+      type(lanes_t), intent(inout) :: q
+      type(increment_t) :: inc
+      real(wp) :: sigma(6), from_centre(6), p, r(6), pulls
+
+      sigma = q%sigma(j, :)
+      call stress_ratio(par, sigma, p, r)
+      q%psi(j) = state_parameter(par%critical, q%bond_f(j), q%e(j), p)
+      call load_increment(j, q, inc)
+      pulls = number(q%exit(j) < 1.0_wp)
+      inc%rho = merge(q%rho(j), 1.0_wp, pulls > 0.5_wp)
+      from_centre = end_of_pull(inc)
+      from_centre = merge(from_centre, q%strain(j, :), pulls > 0.5_wp)
+      q%strain(j, :) = from_centre
+      call elastic_moduli(par%elastic, q%e(j), p, trace(from_centre), q%k(j), q%g(j))
+   end subroutine find_end
 
    !> The rates of all lanes.
    subroutine find_rates(par, q)
@@ -92,13 +167,8 @@ contains
       type(increment_t) :: inc
       real(wp) :: loading(6), aside(6), from_centre
 
-      inc%d_strain = q%d_strain(j, :)
-      inc%from_centre = q%from_centre(j, :)
-      inc%e0 = q%e0(j)
-      inc%d_v = q%d_v(j)
+      call load_increment(j, q, inc)
       inc%rho = merge(q%rho(j), 1.0_wp, q%turns(j) > 0.5_wp)
-      inc%exit = q%exit(j)
-      inc%length = norm(inc%d_strain)
       call loading_strain(inc, MODE_ORDINARY, q%time(j), loading, aside, from_centre)
       q%strain(j, :) = merge(loading, inc%d_strain, q%turns(j) > 0.5_wp)
       q%aside(j, :) = aside

@@ -8,11 +8,11 @@ module mud_lane_rates
    use mud_rate, only: rate_t
    use mud_rates, only: is_certain, MODE_ORDINARY
    use mud_state, only: counters_t
-   use mud_tensor, only: deviator, trace
+   use mud_tensor, only: deviator, norm, trace
    use mud_vector, only: NY, Y_Z, Y_Z_END, WIDTH
    implicit none (type, external)
    private
-   public :: lanes_t, take_increment, ask, load_state, give_rate, number
+   public :: lanes_t, take_increment, load_increment, ask, load_state, give_rate, number
 
    !> Rates side by side; names and units as in rate_t and conditions_t.
    type :: lanes_t
@@ -41,6 +41,8 @@ module mud_lane_rates
       real(wp), dimension(WIDTH) :: r_n, x, z_n, lode, r_b, r_d, a_d, d, h_b, beta, gamma, floored, capped_d, &
                                     capped_h, y, l, d_p, d_eps_q, fails, drive, first_drive, swell
       real(wp), dimension(WIDTH, 6) :: d_sigma, d_z
+      ! the end of an update
+      real(wp), dimension(WIDTH) :: suction, ends_bonded
    end type lanes_t
 contains
    !> Lane j gets an increment.
@@ -59,6 +61,20 @@ contains
       q%exit(j) = inc%exit
       q%bonds(j) = number(inc%suction%bonds)
    end subroutine take_increment
+
+   !> An increment with all that its void ratio, its strain that loads and its end are found of.
+   pure subroutine load_increment(j, q, inc)
+      integer, intent(in) :: j
+      type(lanes_t), intent(in) :: q
+      type(increment_t), intent(inout) :: inc
+
+      inc%d_strain = q%d_strain(j, :)
+      inc%from_centre = q%from_centre(j, :)
+      inc%e0 = q%e0(j)
+      inc%d_v = q%d_v(j)
+      inc%exit = q%exit(j)
+      inc%length = norm(inc%d_strain)
+   end subroutine load_increment
 
    !> Lane j is asked for an ordinary rate of that increment, as rate_of is.
    pure subroutine ask(par, j, inc, time, y, r_in, q, near)

@@ -3,29 +3,32 @@
 !> Every decision is that of one point alone, made by the same procedures.
 module mud_lanes
    use, intrinsic :: iso_c_binding, only: c_ptr, c_loc
-   use mud_blocks, only: blocks_t
+   use mud_blocks, only: blocks_t, elastic_blocks, blocks_of_moduli
+   use mud_bonding, only: is_bonded
    use mud_consistent, only: sensitivity_t, no_sensitivity
    use mud_event, only: EVENT_NONE
    use mud_follow, only: follow_phase, follow_substep
-   use mud_increment, only: increment_t, rate_of, take_phase
+   use mud_increment, only: increment_t, rate_of, take_phase, end_in_domain
    use mud_integration, only: integration_t
    use mud_kinds, only: wp
-   use mud_lane_rates, only: lanes_t, take_increment, ask, give_rate
+   use mud_lane_rates, only: lanes_t, take_increment, ask, give_rate, number
    use mud_mechanism, only: begin_mechanism
    use mud_order, only: look_for_stiffness
    use mud_params, only: params_t
    use mud_phases, only: cut_t, list_cuts, MAX_CUTS
-   use mud_point, only: update_point, begin_update, end_update, give_tangent, TANGENT_CONSISTENT
+   use mud_point, only: update_point, begin_update, end_update, end_way, end_saturation, give_tangent, &
+      TANGENT_NONE, TANGENT_CONSISTENT
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: NSTATV_BASE
-   use mud_retention, only: course_t
-   use mud_state, only: counters_t, statev_size
+   use mud_retention, only: course_t, saturation_t
+   use mud_start, only: finish_state, keep_end
+   use mud_state, only: state_t, counters_t, statev_size
    use mud_status, only: MUD_OK
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, plan_attempt, judge, end_substep, end_phase
    use mud_transient, only: begin_transient, take_far, take_half, half_way, without_turn
-   use mud_transitions, only: begin_substep
+   use mud_transitions, only: take_last_rate, begin_substep
    use mud_trial, only: begin_stage, end_stage, end_stages
    use mud_vector, only: NY, Y_Z, Y_Z_END, WIDTH
    implicit none (type, external)
@@ -37,6 +40,11 @@ module mud_lanes
          import :: c_ptr
          type(c_ptr), value :: material, lanes
       end subroutine mud_find_rates
+
+      subroutine mud_find_ends(material, lanes) bind(c)
+         import :: c_ptr
+         type(c_ptr), value :: material, lanes
+      end subroutine mud_find_ends
    end interface
 
    !> A point on its way, beside its integration.
@@ -72,7 +80,7 @@ contains
       type(lanes_t), target :: q
       type(course_t) :: course   !< No material that fits has hysteresis: one serves every point.
       integer :: j
-      logical :: follows
+      logical :: follows, ends(WIDTH)
 
       follows = tangent == TANGENT_CONSISTENT
       call empty(par, q)
@@ -87,6 +95,7 @@ contains
          of(j)%together = of(j)%phases > 0
          if (.not. of(j)%together) then
             call end_update(par, course, it(j), blocks(j))
+            call elastic_blocks(par, it(j)%state, blocks(j))
             call give_tangent(par, tangent, .false., it(j), of(j)%sens, blocks(j))
             cycle
          end if
@@ -95,6 +104,7 @@ contains
       end do
       do while (any(of(1:n)%together))
          call take_substeps(par, n, follows, it, of, q)
+         ends = .false.
          do j = 1, n
             if (.not. of(j)%together) cycle
             if (it(j)%status%code /= MUD_OK) of(j)%together = .false.
@@ -106,11 +116,79 @@ contains
                cycle
             end if
             of(j)%together = .false.
-            call end_update(par, course, it(j), blocks(j))
-            call give_tangent(par, tangent, .true., it(j), of(j)%sens, blocks(j))
+            ends(j) = .true.
          end do
+         if (any(ends)) call end_updates(par, ends, tangent, course, it, of, blocks, q)
       end do
    end subroutine update_side_by_side
+
+   !> end_update and the tangents of the points that are at their ends.
+   subroutine end_updates(par, ends, tangent, course, it, of, blocks, q)
+      type(params_t), intent(in), target :: par
+      logical, intent(in) :: ends(WIDTH)
+      integer, intent(in) :: tangent
+      type(course_t), intent(in) :: course
+      type(integration_t), intent(inout) :: it(WIDTH)
+      type(point_t), intent(in) :: of(WIDTH)
+      type(blocks_t), intent(inout) :: blocks(WIDTH)
+      type(lanes_t), intent(inout), target :: q
+      type(saturation_t) :: sat
+      real(wp) :: with_turn(2)
+      integer :: j
+
+      do j = 1, WIDTH
+         if (.not. ends(j)) cycle
+         call end_way(par, course, it(j), with_turn)
+         call take_end(par, j, it(j)%inc, it(j)%state, q)
+      end do
+      call mud_find_ends(c_loc(par), c_loc(q))
+      with_turn = 0.0_wp   ! no hysteresis
+      do j = 1, WIDTH
+         if (.not. ends(j)) cycle
+         call give_end(par, j, q, it(j)%state, sat)
+         if (it(j)%state%gap > 0.0_wp) then
+            call finish_state(par, it(j)%inc%suction, it(j)%state, sat)
+            call elastic_blocks(par, it(j)%state, blocks(j))
+         else if (tangent /= TANGENT_NONE) then
+            call blocks_of_moduli(q%k(j), q%g(j), blocks(j))
+         end if
+         call end_saturation(sat, with_turn, it(j), blocks(j))
+         call give_tangent(par, tangent, .true., it(j), of(j)%sens, blocks(j))
+      end do
+   end subroutine end_updates
+
+   !> Lane j is asked for what finish_state finds of a state without a gap where its increment ends, for the elastic
+   !> moduli and the strain from the centre of the elastic domain.
+   pure subroutine take_end(par, j, inc, state, q)
+      type(params_t), intent(in) :: par
+      integer, intent(in) :: j
+      type(increment_t), intent(in) :: inc   !< As take_increment had it.
+      type(state_t), intent(in) :: state
+      type(lanes_t), intent(inout) :: q
+
+      q%sigma(j, :) = state%sigma
+      q%e(j) = state%e
+      q%suction(j) = state%p_c
+      q%ends_bonded(j) = number(is_bonded(par%suction, state%p_c))
+      if (inc%exit < 1.0_wp) return   ! the lane finds the strain from the centre
+      q%strain(j, :) = 0.0_wp
+      if (inc%rho > 0.0_wp) q%strain(j, :) = end_in_domain(inc)
+   end subroutine take_end
+
+   !> What lane j has found.
+   pure subroutine give_end(par, j, q, state, sat)
+      type(params_t), intent(in) :: par
+      integer, intent(in) :: j
+      type(lanes_t), intent(in) :: q
+      type(state_t), intent(inout) :: state
+      type(saturation_t), intent(out) :: sat
+
+      sat%s_w = q%s_w(j)
+      sat%ds_dpc = q%ds_dpc(j)
+      sat%ds_de = q%ds_de(j)
+      call keep_end(par%suction, sat, q%psi(j), state)
+      if (par%rho_e > 0.0_wp) state%from_centre = q%strain(j, :)
+   end subroutine give_end
 
    pure subroutine next_phase(par, follows, it, of)
       type(params_t), intent(in), target :: par
@@ -139,6 +217,7 @@ contains
       do j = 1, n
          of(j)%asks = .false.
          if (.not. of(j)%together) cycle
+         call take_last_rate(it(j))
          call begin_mechanism(par, it(j)%state, it(j)%inc, it(j)%trial, it(j)%known)
          call take_increment(j, it(j)%inc, q)
          ! rates of one point placed an event, and they alone are sure to be on the same side of it
@@ -152,8 +231,7 @@ contains
       if (any(of(1:n)%asks)) then
          call find_rates(par, q)
          do j = 1, n
-            if (of(j)%asks) call give_rate(par, j, .false., q, it(j)%trial%w(it(j)%inc%scheme%stages), it(j)%counters, &
-                                           it(j)%known)
+            if (of(j)%asks) call give_rate(par, j, .false., q, it(j)%trial%w(1), it(j)%counters, it(j)%known)
          end do
       end if
       do j = 1, n
@@ -296,5 +374,8 @@ contains
          call take_increment(j, inc, q)
          call ask(par, j, inc, 0.0_wp, y, 0.0_wp*AXIAL, q)
       end do
+      q%e = inc%e0
+      q%suction = 0.0_wp
+      q%ends_bonded = 0.0_wp
    end subroutine empty
 end module mud_lanes

@@ -6,7 +6,8 @@ module mud_tensor
    use mud_kinds, only: wp
    implicit none (type, external)
    private
-   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, within, all_finite, all_zero, &
+   public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, within, all_finite, all_within, &
+             all_zero, &
              outer_add, outer_sum, rotate, LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, &
              UNIT_STRAINS, ANY_TENSORS, strain_directions
 
@@ -27,8 +28,8 @@ module mud_tensor
    !> Number of places at which a stored component stands in the 3 x 3 matrix.
    real(wp), parameter :: SHEAR_WEIGHT(6) = [1.0_wp, 1.0_wp, 1.0_wp, 2.0_wp, 2.0_wp, 2.0_wp]
    integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
-   !> Added to the exponent's bits, one place to the right, it carries into the second bit of all if they are all set.
-   integer(int64), parameter :: CARRY = int(z'0008000000000000', int64), CARRIED = int(z'4000000000000000', int64)
+   !> All bits but the sign's: as whole numbers they are ordered as magnitudes are, and what is not finite is largest.
+   integer(int64), parameter :: MAGNITUDE = huge(0_int64), LARGEST = transfer(huge(1.0_wp), 0_int64)
 contains
    !> Unit engineering strains as tensors, one a direction [-].
    pure function strain_directions() result(unit)
@@ -153,10 +154,25 @@ contains
 
       marks = 0
       do i = 1, size(x)
-         marks = ior(marks, ishft(iand(transfer(x(i), 0_int64), EXPONENT_BITS), -1) + CARRY)
+         marks = ior(marks, LARGEST - iand(transfer(x(i), 0_int64), MAGNITUDE))
       end do
-      all_finite = iand(marks, CARRIED) == 0
+      all_finite = marks >= 0
    end function all_finite
+
+   !> True if every number is finite and of a magnitude up to its limit, without a branch for each. Nothing is compared
+   !> as a number: it never traps. limits are finite and not negative, in the unit of x.
+   pure logical function all_within(n, x, limits)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: x(n), limits(n)
+      integer(int64) :: marks
+      integer :: i
+
+      marks = 0
+      do i = 1, n
+         marks = ior(marks, transfer(limits(i), 0_int64) - iand(transfer(x(i), 0_int64), MAGNITUDE))
+      end do
+      all_within = marks >= 0
+   end function all_within
 
    !> True if every number is +0, without a branch for each. x(:) of any size; true of none.
    pure logical function all_zero(x)

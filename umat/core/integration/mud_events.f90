@@ -28,6 +28,7 @@ contains
       logical :: possible
 
       it%event = EVENT_NONE
+      !GCC$ UNROLL 12
       do i = 1, ubound(EVENTS, 1)
          if (.not. EVENTS(i)%concerns(it%trial%mode)) cycle
          call look_ahead(par, it%inc, i, error, h, it%trial, it%counters, possible)

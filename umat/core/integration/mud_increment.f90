@@ -17,7 +17,7 @@ module mud_increment
    implicit none (type, external)
    private
    public :: turns, add_aside, count_rate
-   public :: increment_t, new_increment, take_phase, end_in_domain, volume_from_centre, direction_at, void_ratio_at, &
+   public :: increment_t, new_increment, take_phase, end_in_domain, end_of_pull, volume_from_centre, direction_at, void_ratio_at, &
              suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, STRAIGHT
 
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
@@ -243,11 +243,19 @@ contains
       real(wp) :: from_centre(6)
 
       if (inc%exit < 1.0_wp) then
-         from_centre = inc%rho*direction_at(inc, 1.0_wp)
+         from_centre = end_of_pull(inc)
       else
          from_centre = inc%from_centre + inc%d_strain
       end if
    end function end_in_domain
+
+   !> The same of an increment that leaves the domain, which it pulls along.
+   pure function end_of_pull(inc) result(from_centre)
+      type(increment_t), intent(in) :: inc
+      real(wp) :: from_centre(6)
+
+      from_centre = inc%rho*direction_at(inc, 1.0_wp)
+   end function end_of_pull
 
    !> nu at a pseudo-time beyond the exit [-]. docs/theory/memory-rules.md section 4.2.
    pure function direction_at(inc, time) result(nu)

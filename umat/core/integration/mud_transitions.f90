@@ -26,12 +26,19 @@ module mud_transitions
    use mud_vector, only: Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
-   public :: begin_substep, accept_substep, rate_is_known
+   public :: take_last_rate, begin_substep, accept_substep, rate_is_known
 
 contains
+   !> The last rate of the substep before is the first of the coming one, if that is known.
+   pure subroutine take_last_rate(it)
+      type(integration_t), intent(inout) :: it
+
+      if (it%known .and. it%trial%mode == MODE_ORDINARY) it%trial%w(1) = it%trial%w(it%inc%scheme%stages)
+   end subroutine take_last_rate
+
    !> Decides what the coming substep is - ordinary, elastic or held by the tension cut-off - applies the memory rule,
-   !> and leaves the first rate in the trial. docs/theory/integration.md section 1, docs/theory/memory-rules.md section
-   !> 3.5, docs/theory/material.md section 6.
+   !> and leaves the first rate in the trial, where it stands already if it is known. docs/theory/integration.md section
+   !> 1, docs/theory/memory-rules.md section 3.5, docs/theory/material.md section 6.
    pure subroutine begin_substep(par, it)
       type(params_t), intent(in) :: par
       type(integration_t), intent(inout) :: it
@@ -71,7 +78,6 @@ contains
       it%trial%advanced = .false.
       if (it%trial%mode == MODE_ORDINARY) then
          if (it%known) then
-            it%trial%w(1) = it%trial%w(it%inc%scheme%stages)
             if (dragged) call rate_at_beginning(par, it)
          else
             call first_rate(par, it)

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> State of an integration point, and its place in STATEV.
 module mud_state
+   use, intrinsic :: iso_fortran_env, only: int64
    use mud_kinds, only: wp
    use mud_params, only: options_t
    use mud_registry, only: NSTATV, NSTATV_BASE, NSTATV_WITHOUT_PRELOADING, NSTATV_WITHOUT_FLUIDITY, &
@@ -12,7 +13,7 @@ module mud_state
       S_CHI_OWN, S_CHI_STACK, S_MARGIN, S_FLUIDITY
    use mud_retention, only: turns_t, NO_TURNS
    use mud_status, only: mud_status_t, fail, MUD_BAD_STATE, MUD_BAD_NSTATV, ON_STATEV
-   use mud_tensor, only: is_finite, all_finite, all_zero
+   use mud_tensor, only: is_finite, all_finite, all_within, all_zero
    implicit none (type, external)
    private
    public :: memory_t, interrupted_t, state_t, counters_t, guard_count, pack_state, unpack_state, &
@@ -30,9 +31,45 @@ module mud_state
    real(wp), parameter :: LARGEST_FLUIDITY = 1.0e4_wp     !< ell_max is at most that [-].
    real(wp), parameter :: LARGEST_MARGIN = 1.0e3_wp       !< ln of a double [-].
    real(wp), parameter :: LARGEST_DIRECTION = 1.01_wp     !< Components of a unit tensor [-].
-   !> Counts and flags of every point: numbers that are not whole are the average of two states.
-   integer, parameter :: WHOLE_ENTRIES(*) = [S_INTERRUPTED, S_OPEN, S_N_RATE, S_N_SUBSTEP, S_N_REJECT, S_N_RESET, &
-      S_N_GUARD, S_N_NO_ROOT, S_N_MIN_STEP, S_N_OPEN, S_N_TENSILE]
+   !> Range of some entries of STATEV that follow each other, the same for each.
+   type :: range_t
+      integer :: first, last
+      real(wp) :: lower, upper
+   end type range_t
+
+   !> In the order in which they are told. Of the void ratio it depends on the gap: here it has the largest.
+   type(range_t), parameter :: RANGES(*) = [ &
+      range_t(S_LAYOUT, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp)), &
+      range_t(S_GAP, S_GAP, 0.0_wp, E_OPEN - E_LOWER), &
+      range_t(S_MARGIN, S_MARGIN, -LARGEST_MARGIN, 0.0_wp), &
+      range_t(S_VOID_RATIO, S_VOID_RATIO, E_LOWER, E_UPPER + E_OPEN - E_LOWER), &
+      range_t(S_SATURATION, S_SATURATION, 0.0_wp, 1.0_wp), &
+      range_t(S_INTERRUPTED, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp)), &
+      range_t(S_OPEN, S_OPEN, 0.0_wp, 1.0_wp), &
+      range_t(S_LAST_STEP, S_LAST_STEP, 0.0_wp, huge(1.0_wp)), &
+      range_t(S_EPS_Q_P, S_EPS_Q_P, 0.0_wp, huge(1.0_wp)), &
+      range_t(S_TARGET, S_TARGET, -LARGEST_RATIO, LARGEST_RATIO), &
+      range_t(S_X_BEFORE, S_X_BEFORE, -LARGEST_RATIO, LARGEST_RATIO), &
+      range_t(S_X_RUNNING, S_X_RUNNING, -LARGEST_RATIO, LARGEST_RATIO), &
+      range_t(S_FABRIC, S_FABRIC + 5, -LARGEST_FABRIC, LARGEST_FABRIC), &
+      range_t(S_MEMORY, S_MEMORY + 5, -LARGEST_RATIO, LARGEST_RATIO), &
+      range_t(S_MEMORY_BEFORE, S_MEMORY_BEFORE + 5, -LARGEST_RATIO, LARGEST_RATIO), &
+      range_t(S_DIRECTION, S_DIRECTION + 5, -LARGEST_DIRECTION, LARGEST_DIRECTION), &
+      range_t(S_ELASTIC_DOMAIN, S_ELASTIC_DOMAIN + 5, -LARGEST_FROM_CENTRE, LARGEST_FROM_CENTRE)]
+   integer, parameter :: ALWAYS = S_STACK - 1   !< Entries ahead of the interrupted processes.
+   integer, private :: i_
+   !> The same entry by entry, side by side; an entry without a range has none.
+   real(wp), parameter :: LOWER(ALWAYS) = [(maxval(RANGES%lower, RANGES%first <= i_ .and. i_ <= RANGES%last), &
+      i_=1, ALWAYS)]
+   real(wp), parameter :: UPPER(ALWAYS) = [(minval(RANGES%upper, RANGES%first <= i_ .and. i_ <= RANGES%last), &
+      i_=1, ALWAYS)]
+   real(wp), parameter :: LIMITS(ALWAYS) = max(abs(LOWER), abs(UPPER))
+   !> Entries of which not only the magnitude has a limit.
+   integer, parameter :: ONE_SIDED(*) = pack([(i_, i_=1, ALWAYS)], abs(LOWER + UPPER) > 0.0_wp)
+   !> Counts and flags of every point: numbers that are not whole are the average of two states. First and last of those
+   !> that follow each other.
+   integer, parameter :: WHOLE_FIRST(2) = [S_INTERRUPTED, S_N_RATE], WHOLE_LAST(2) = [S_OPEN, S_N_TENSILE]
+   real(wp), parameter :: ALL_WHOLE = 1.0_wp/epsilon(1.0_wp)   !< From here on numbers have no fraction.
 
    !> A loading process that was interrupted (rule return_point).
    type :: interrupted_t
@@ -99,44 +136,17 @@ contains
       type(options_t), intent(in) :: options
       type(state_t), intent(inout) :: state
       type(mud_status_t), intent(out) :: status
-      integer :: i, used
-      logical :: finite
+      integer :: used
 
       if (size(statev) < statev_size(options)) then
          status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(statev_size(options), wp), &
                        huge(1.0_wp))
          return
       end if
-      used = S_STACK - 1 + ENTRY_SIZE*stored_processes(statev)
-      finite = all_finite(statev(1:used))
+      used = ALWAYS + ENTRY_SIZE*stored_processes(statev)
       ! beyond the interrupted processes there are zeros
-      if (finite .and. .not. all_zero(statev(used + 1:NSTATV_BASE))) &
-         finite = all_finite(statev(used + 1:NSTATV_BASE))
-      if (.not. finite) then
-         i = findloc(is_finite(statev(1:NSTATV_BASE)), .false., dim=1)
-         status = fail(MUD_BAD_STATE, ON_STATEV, i, statev(i), -huge(1.0_wp), huge(1.0_wp))
-         return
-      end if
-      call require(statev, S_LAYOUT, real(STATE_LAYOUT, wp), real(STATE_LAYOUT, wp), status)
-      call require(statev, S_GAP, 0.0_wp, E_OPEN - E_LOWER, status)
-      call require(statev, S_MARGIN, -LARGEST_MARGIN, 0.0_wp, status)
-      call require(statev, S_VOID_RATIO, E_LOWER, E_UPPER + statev(S_GAP), status)
-      call require(statev, S_SATURATION, 0.0_wp, 1.0_wp, status)
-      call require(statev, S_INTERRUPTED, 0.0_wp, real(MAX_INTERRUPTED, wp), status)
-      call require(statev, S_OPEN, 0.0_wp, 1.0_wp, status)
-      do i = 1, size(WHOLE_ENTRIES)
-         call require_whole(statev, WHOLE_ENTRIES(i), status)
-      end do
-      call require(statev, S_LAST_STEP, 0.0_wp, huge(1.0_wp), status)
-      call require(statev, S_EPS_Q_P, 0.0_wp, huge(1.0_wp), status)
-      call require(statev, S_TARGET, -LARGEST_RATIO, LARGEST_RATIO, status)
-      call require(statev, S_X_BEFORE, -LARGEST_RATIO, LARGEST_RATIO, status)
-      call require(statev, S_X_RUNNING, -LARGEST_RATIO, LARGEST_RATIO, status)
-      call require_tensor(statev, S_FABRIC, LARGEST_FABRIC, status)
-      call require_tensor(statev, S_MEMORY, LARGEST_RATIO, status)
-      call require_tensor(statev, S_MEMORY_BEFORE, LARGEST_RATIO, status)
-      call require_tensor(statev, S_DIRECTION, LARGEST_DIRECTION, status)
-      call require_tensor(statev, S_ELASTIC_DOMAIN, LARGEST_FROM_CENTRE, status)
+      if (.not. (is_sound(statev) .and. all_finite(statev(ALWAYS + 1:used)) .and. &
+                 all_zero(statev(used + 1:NSTATV_BASE)))) call find_fault(statev, status)
       if (status%code /= 0) return
       call unpack_stack(statev, state%memory, status)
       call unpack_turns(statev, options, state%turns, status)
@@ -165,6 +175,65 @@ contains
       state%memory%x_before = statev(S_X_BEFORE)
       state%memory%x_running = statev(S_X_RUNNING)
    end subroutine unpack_state
+
+   !> True where all is well with the entries of every point; not always where it is. Without a branch for each.
+   pure logical function is_sound(statev)
+      real(wp), intent(in) :: statev(ALWAYS)
+      integer(int64) :: fractions
+      integer :: i, k
+
+      is_sound = all_within(ALWAYS, statev, LIMITS)
+      if (.not. is_sound) return   ! what is not a number is not compared
+      fractions = 0
+      do k = 1, size(WHOLE_FIRST)
+         do i = WHOLE_FIRST(k), WHOLE_LAST(k)
+            fractions = ior(fractions, transfer(abs(rounding(abs(statev(i)))), 0_int64))
+         end do
+      end do
+      is_sound = fractions == 0 .and. statev(S_VOID_RATIO) <= largest_void_ratio(statev)
+      do k = 1, size(ONE_SIDED)
+         i = ONE_SIDED(k)
+         is_sound = is_sound .and. statev(i) >= LOWER(i) .and. statev(i) <= UPPER(i)
+      end do
+   end function is_sound
+
+   !> Rounding of a finite number x >= 0 to a whole one: 0 only if it is whole, and always so below ALL_WHOLE. Rounds
+   !> without a call.
+   pure real(wp) function rounding(x)
+      real(wp), intent(in) :: x
+
+      rounding = ((x + ALL_WHOLE) - ALL_WHOLE) - x
+   end function rounding
+
+   !> What is wrong with a state, if anything is. The status of unpack_state.
+   pure subroutine find_fault(statev, status)
+      real(wp), intent(in), contiguous :: statev(:)
+      type(mud_status_t), intent(inout) :: status
+      integer :: i, k
+
+      i = findloc(is_finite(statev(1:NSTATV_BASE)), .false., dim=1)
+      if (i > 0) then
+         status = fail(MUD_BAD_STATE, ON_STATEV, i, statev(i), -huge(1.0_wp), huge(1.0_wp))
+         return
+      end if
+      do k = 1, size(RANGES)
+         do i = RANGES(k)%first, RANGES(k)%last
+            call require(statev, i, LOWER(i), merge(largest_void_ratio(statev), UPPER(i), i == S_VOID_RATIO), status)
+         end do
+      end do
+      do k = 1, size(WHOLE_FIRST)
+         do i = WHOLE_FIRST(k), WHOLE_LAST(k)
+            call require_whole(statev, i, status)
+         end do
+      end do
+   end subroutine find_fault
+
+   !> Largest void ratio of a point with the gap that it has [-].
+   pure real(wp) function largest_void_ratio(statev)
+      real(wp), intent(in) :: statev(ALWAYS)
+
+      largest_void_ratio = E_UPPER + statev(S_GAP)
+   end function largest_void_ratio
 
    !> Reads the interrupted processes; places beyond their number are not looked at.
    pure subroutine unpack_stack(statev, memory, status)
@@ -293,13 +362,10 @@ contains
       real(wp), intent(in) :: statev(:)
       integer, intent(in) :: entry
       type(mud_status_t), intent(inout) :: status
-      real(wp), parameter :: ALL_WHOLE = 1.0_wp/epsilon(1.0_wp)   ! From here on numbers have no fraction.
-      real(wp) :: x
 
       if (status%code /= 0) return
-      x = abs(statev(entry))
-      if (x >= ALL_WHOLE) return
-      if (abs(((x + ALL_WHOLE) - ALL_WHOLE) - x) <= 0.0_wp) return   ! rounds without a call
+      if (abs(statev(entry)) >= ALL_WHOLE) return
+      if (abs(rounding(abs(statev(entry)))) <= 0.0_wp) return
       status = fail(MUD_BAD_STATE, ON_STATEV, entry, statev(entry), -huge(1.0_wp), huge(1.0_wp))
    end subroutine require_whole
 

@@ -3,7 +3,7 @@
 module mud_blocks
    use mud_kinds, only: wp
    use mud_cutoff, only: soil_void_ratio, MODE_HELD
-   use mud_elastic, only: bulk_modulus, centre_modulus, elastic_tangent
+   use mud_elastic, only: centre_modulus, elastic_moduli, elastic_tangent
    use mud_held, only: held_tangent
    use mud_increment, only: increment_t, has_elastic_part, direction_at, end_in_domain
    use mud_params, only: params_t
@@ -15,7 +15,7 @@ module mud_blocks
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: blocks_t, elastic_blocks, continuum_blocks
+   public :: blocks_t, elastic_blocks, blocks_of_moduli, continuum_blocks
 
    !> Tangent blocks, compression positive, with engineering shear strain.
    type :: blocks_t
@@ -32,16 +32,23 @@ contains
       type(params_t), intent(in) :: par
       type(state_t), intent(in) :: state
       type(blocks_t), intent(inout) :: blocks
-      real(wp) :: p, r(6), e, k, from_centre
+      real(wp) :: p, r(6), k, g, from_centre
 
       call stress_ratio(par, state%sigma, p, r)
-      e = soil_void_ratio(state)
       from_centre = 0.0_wp
       if (par%rho_e > 0.0_wp) from_centre = trace(state%from_centre)
-      k = bulk_modulus(par%elastic, e, p)
-      blocks%dsig_deps = elastic_tangent(k, centre_modulus(par%elastic, e, k, from_centre))
-      blocks%dsig_dpc = 0.0_wp
+      call elastic_moduli(par%elastic, soil_void_ratio(state), p, from_centre, k, g)
+      call blocks_of_moduli(k, g, blocks)
    end subroutine elastic_blocks
+
+   !> elastic_blocks of the moduli there [kPa].
+   pure subroutine blocks_of_moduli(k, g, blocks)
+      real(wp), intent(in) :: k, g
+      type(blocks_t), intent(inout) :: blocks
+
+      blocks%dsig_deps = elastic_tangent(k, g)
+      blocks%dsig_dpc = 0.0_wp
+   end subroutine blocks_of_moduli
 
    !> Blocks of the last rate of an increment. Units as in blocks_t; those of S_w stay as they are.
    !> docs/theory/integration.md sections 5.2 and 5.4.
