@@ -54,10 +54,12 @@ module mud_lanes
       logical :: ended
       logical :: asks          !< It waits for a rate.
       integer :: phases, phase
+      integer :: depth         !< Number of interrupted processes where the increment began.
+      logical :: goes_on       !< The first substep did not end the update.
       real(wp) :: h, time
       type(cut_t) :: cuts(MAX_CUTS)
       type(stepping_t) :: step
-      type(sensitivity_t) :: sens
+      type(sensitivity_t) :: sens   !< Complete where the update goes on; otherwise derivatives of the stress alone.
    end type point_t
 contains
    !> True of a material whose rates the lanes know.
@@ -99,7 +101,8 @@ contains
             call give_tangent(par, tangent, .false., it(j), of(j)%sens, blocks(j))
             cycle
          end if
-         if (follows) call no_sensitivity(it(j)%state%memory%depth, it(j)%inc, of(j)%sens)
+         of(j)%depth = it(j)%state%memory%depth
+         of(j)%goes_on = .false.
          call next_phase(par, follows, it(j), of(j))
       end do
       do while (any(of(1:n)%together))
@@ -198,8 +201,31 @@ contains
 
       call take_phase(par, it%reached, of%cuts(of%phase)%time, it%inc)
       call begin_phase(par, of%step, it)
-      if (follows) call follow_phase(par, it%inc, of%cuts(of%phase), of%sens)
+      if (follows .and. of%goes_on) call follow_phase(par, it%inc, of%cuts(of%phase), of%sens)
    end subroutine next_phase
+
+   !> Derivatives follow a substep of a point. Most updates have one substep: then they stay in `near`, which the
+   !> processor has near when the next point uses it.
+   pure subroutine follow(par, it, of, near)
+      type(params_t), intent(in) :: par
+      type(integration_t), intent(in) :: it
+      type(point_t), intent(inout) :: of
+      type(sensitivity_t), intent(inout) :: near
+
+      if (of%goes_on) then
+         call follow_substep(par, it, of%h, of%sens)
+         return
+      end if
+      call no_sensitivity(of%depth, it%inc, near)
+      call follow_phase(par, it%inc, of%cuts(1), near)
+      call follow_substep(par, it, of%h, near)
+      of%goes_on = of%phase < of%phases .or. it%reached < it%inc%to
+      if (of%goes_on) then
+         of%sens = near
+      else
+         of%sens%y(:, 1:6) = near%y(:, 1:6)
+      end if
+   end subroutine follow
 
    !> One substep of every point that is not at its end.
    subroutine take_substeps(par, n, follows, it, of, q)
@@ -209,6 +235,7 @@ contains
       type(integration_t), intent(inout) :: it(WIDTH)
       type(point_t), intent(inout) :: of(WIDTH)
       type(lanes_t), intent(inout), target :: q
+      type(sensitivity_t) :: near
       real(wp) :: y(NY)
       integer :: i, j, stages
       logical :: stiff
@@ -280,7 +307,11 @@ contains
          end if
          if (.not. of(j)%together .or. it(j)%status%code /= MUD_OK) cycle
          call end_substep(par, of(j)%step, of(j)%h, it(j))
-         if (follows .and. it(j)%status%code == MUD_OK) call follow_substep(par, it(j), of(j)%h, of(j)%sens)
+      end do
+      if (.not. follows) return
+      ! A loop of its own: the instructions of both together do not fit into the memory that is nearest.
+      do j = 1, n
+         if (of(j)%together .and. it(j)%status%code == MUD_OK) call follow(par, it(j), of(j), near)
       end do
    end subroutine take_substeps
 

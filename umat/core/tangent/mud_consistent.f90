@@ -333,20 +333,12 @@ contains
 
       e = void_ratio_at(inc, time)
       call changes_along(inc, mode, time, e, dt, driving, changes)
-      rests = at_rest
-      if (at_rest) rests = are_zero(changes)
+      rests = at_rest .and. time <= 0.0_wp   ! behind the start of the increment void ratio and suction have changes
       call linearise_stage(par, inc, w, point, time, e, changes%loading, rests, lin)
       call changes_of_rate(par, w, lin, rests, y, r_in, driving%d_strain, driving%from_centre, &
                            changes, stress_only, rates)
       if (.not. stress_only) call add_volume_changes(par, inc%d_v, point, y, driving%d_v, rates)
    end subroutine change_of_stage
-
-   !> True where void ratio and suction do not change.
-   pure logical function are_zero(changes)
-      type(changes_t), intent(in) :: changes
-
-      are_zero = sum(abs(changes%e)) + sum(abs(changes%p_c)) <= 0.0_wp
-   end function are_zero
 
    !> Prepares the derivative of the rate w of a stage, at a point of the integrated vector, a pseudo-time and a void
    !> ratio. point has sigma' [kPa], z and plastic shear [-]; time is a share of inc, e the void ratio [-].
