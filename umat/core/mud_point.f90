@@ -106,7 +106,7 @@ contains
    !> Whether derivatives of the stress are slopes: those of explicit substeps at the limit of their stability grow from
    !> one to the next, up to 1e108 kPa, while error control keeps the stress. docs/theory/integration.md section 5.3.
    pure logical function is_slope(y, stiffness)
-      real(wp), intent(in) :: y(LANES, 6) !< Of stresses by strain [kPa], by suction [-], and of an idle direction.
+      real(wp), intent(in) :: y(LANES, 6) !< By strain [kPa], by suction [-], and along the idle direction.
       real(wp), intent(in) :: stiffness   !< Largest elastic one [kPa].
       real(wp), parameter :: STEEPEST = 1.0e4_wp   !< The stress of an increment changes the stiffness by less.
       real(wp) :: largest(LANES, 6)
@@ -163,7 +163,7 @@ contains
       type(params_t), intent(in) :: par
       type(course_t), intent(in) :: course
       type(integration_t), intent(inout) :: it
-      real(wp), intent(out) :: with_turn(2)   !< of end_course
+      real(wp), intent(out) :: with_turn(2)   !< as end_course has it
 
       it%reached = 1.0_wp
       it%state%e = void_ratio_at(it%inc, 1.0_wp)

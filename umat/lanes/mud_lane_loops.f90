@@ -48,7 +48,7 @@ contains
       call find_ends(par, q)
    end subroutine mud_find_ends
 
-   !> What is asked for where updates end.
+   !> State parameter, saturation, elastic moduli and strain from the centre of the elastic domain where updates end.
    subroutine find_ends(par, q)
       type(params_t), intent(in) :: par
       type(lanes_t), intent(inout) :: q

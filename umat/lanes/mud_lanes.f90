@@ -178,7 +178,7 @@ contains
       if (inc%rho > 0.0_wp) q%strain(j, :) = end_in_domain(inc)
    end subroutine take_end
 
-   !> What lane j has found.
+   !> A state gets its end from lane j.
    pure subroutine give_end(par, j, q, state, sat)
       type(params_t), intent(in) :: par
       integer, intent(in) :: j

@@ -17,8 +17,8 @@ module mud_increment
    implicit none (type, external)
    private
    public :: turns, add_aside, count_rate
-   public :: increment_t, new_increment, take_phase, end_in_domain, end_of_pull, volume_from_centre, direction_at, void_ratio_at, &
-             suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, STRAIGHT
+   public :: increment_t, new_increment, take_phase, end_in_domain, end_of_pull, volume_from_centre, direction_at, &
+             void_ratio_at, suction_at, rate_of, store_rate, loading_strain, has_elastic_part, since_centre, STRAIGHT
 
    !> A strain across the elastic domain, whose part along nu is rounding of either sign, does not load: it would look
    !> like a reversal [-].
@@ -249,7 +249,7 @@ contains
       end if
    end function end_in_domain
 
-   !> The same of an increment that leaves the domain, which it pulls along.
+   !> The strain there where the increment leaves the domain, which it pulls along [-].
    pure function end_of_pull(inc) result(from_centre)
       type(increment_t), intent(in) :: inc
       real(wp) :: from_centre(6)

@@ -5,8 +5,8 @@ module mud_elastic
    implicit none (type, external)
    private
    public :: elastic_t, bulk_modulus, bulk_slope, shear_modulus, shear_slope, swelling_slope, elastic_tangent, &
-             add_elastic, pressure_root, compressed, centre_modulus, elastic_moduli, changed_centre_modulus, BULK_EXPONENT, &
-             SHEAR_EXPONENT, STIFF_ABOVE
+             add_elastic, pressure_root, compressed, centre_modulus, elastic_moduli, changed_centre_modulus, &
+             BULK_EXPONENT, SHEAR_EXPONENT, STIFF_ABOVE
 
    real(wp), parameter :: BULK_EXPONENT = 2.0_wp/3.0_wp, SHEAR_EXPONENT = 0.5_wp   !< Exponents of p' in K and in G [-].
    !> Void ratio of eq. (3) at which G vanishes: its square grows again beyond, where it means nothing [-].
@@ -101,8 +101,9 @@ contains
       g = shear_modulus(par, e_centre, max(compressed(par, pressure_root(par, e, k), log_ratio), par%p_min))
    end function centre_modulus
 
-   !> Moduli K, G [kPa] of an elastic strain at a void ratio [-] and a mean effective stress [kPa], a volumetric strain v
-   !> [-] from the centre of the elastic domain. docs/theory/material.md section 3.1, memory-rules.md section 4.3.
+   !> Moduli K, G [kPa] of an elastic strain at a void ratio [-] and a mean effective stress [kPa], a volumetric strain
+   !> v [-] from the centre of the elastic domain. docs/theory/material.md section 3.1, docs/theory/memory-rules.md
+   !> section 4.3.
    pure subroutine elastic_moduli(par, e, p, v, k, g)
       type(elastic_t), intent(in) :: par
       real(wp), intent(in) :: e, p, v

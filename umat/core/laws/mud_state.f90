@@ -57,15 +57,6 @@ module mud_state
       range_t(S_DIRECTION, S_DIRECTION + 5, -LARGEST_DIRECTION, LARGEST_DIRECTION), &
       range_t(S_ELASTIC_DOMAIN, S_ELASTIC_DOMAIN + 5, -LARGEST_FROM_CENTRE, LARGEST_FROM_CENTRE)]
    integer, parameter :: ALWAYS = S_STACK - 1   !< Entries ahead of the interrupted processes.
-   integer, private :: i_
-   !> The same entry by entry, side by side; an entry without a range has none.
-   real(wp), parameter :: LOWER(ALWAYS) = [(maxval(RANGES%lower, RANGES%first <= i_ .and. i_ <= RANGES%last), &
-      i_=1, ALWAYS)]
-   real(wp), parameter :: UPPER(ALWAYS) = [(minval(RANGES%upper, RANGES%first <= i_ .and. i_ <= RANGES%last), &
-      i_=1, ALWAYS)]
-   real(wp), parameter :: LIMITS(ALWAYS) = max(abs(LOWER), abs(UPPER))
-   !> Entries of which not only the magnitude has a limit.
-   integer, parameter :: ONE_SIDED(*) = pack([(i_, i_=1, ALWAYS)], abs(LOWER + UPPER) > 0.0_wp)
    !> Counts and flags of every point: numbers that are not whole are the average of two states. First and last of those
    !> that follow each other.
    integer, parameter :: WHOLE_FIRST(2) = [S_INTERRUPTED, S_N_RATE], WHOLE_LAST(2) = [S_OPEN, S_N_TENSILE]
@@ -181,6 +172,14 @@ contains
       real(wp), intent(in) :: statev(ALWAYS)
       integer(int64) :: fractions
       integer :: i, k
+      !> RANGES entry by entry, side by side; -huge and huge of an entry that has none.
+      real(wp), parameter :: LOWER(ALWAYS) = [(maxval(RANGES%lower, RANGES%first <= i .and. i <= RANGES%last), &
+         i=1, ALWAYS)]
+      real(wp), parameter :: UPPER(ALWAYS) = [(minval(RANGES%upper, RANGES%first <= i .and. i <= RANGES%last), &
+         i=1, ALWAYS)]
+      real(wp), parameter :: LIMITS(ALWAYS) = max(abs(LOWER), abs(UPPER))
+      !> Entries of which not only the magnitude has a limit.
+      integer, parameter :: ONE_SIDED(*) = pack([(i, i=1, ALWAYS)], abs(LOWER + UPPER) > 0.0_wp)
 
       is_sound = all_within(ALWAYS, statev, LIMITS)
       if (.not. is_sound) return   ! what is not a number is not compared
@@ -205,7 +204,7 @@ contains
       rounding = ((x + ALL_WHOLE) - ALL_WHOLE) - x
    end function rounding
 
-   !> What is wrong with a state, if anything is. The status of unpack_state.
+   !> The first entry with a fault is kept in the status, which is that of unpack_state; a sound state leaves it.
    pure subroutine find_fault(statev, status)
       real(wp), intent(in), contiguous :: statev(:)
       type(mud_status_t), intent(inout) :: status
@@ -218,7 +217,8 @@ contains
       end if
       do k = 1, size(RANGES)
          do i = RANGES(k)%first, RANGES(k)%last
-            call require(statev, i, LOWER(i), merge(largest_void_ratio(statev), UPPER(i), i == S_VOID_RATIO), status)
+            call require(statev, i, RANGES(k)%lower, &
+                         merge(largest_void_ratio(statev), RANGES(k)%upper, i == S_VOID_RATIO), status)
          end do
       end do
       do k = 1, size(WHOLE_FIRST)
