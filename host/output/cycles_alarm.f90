@@ -5,9 +5,10 @@
 module cycles_alarm
    use archive, only: archive_t
    use faults, only: fault_t
+   use generalised_alpha, only: has_inertia
    use kinds, only: wp
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
-   use run_observer, only: observer_t, BEGINS, STEP
+   use run_observer, only: observer_t, BEGINS, STAGE_BEGINS, STEP
    use run_state, only: run_t, now_in
    use scene_parts, only: amplitude_at, acts_in
    use texts, only: short, whole
@@ -29,6 +30,8 @@ module cycles_alarm
       integer, allocatable :: sense(:)       !< Way that each goes, 1 or -1; 0: it has not moved.
       integer, allocatable :: turns(:)       !< Number of turns; see follow_ground for displacements.
       real(wp) :: largest = 0.0_wp           !< Largest displacement when turns of the ground began to count [m].
+      !> (2, nodes) Displacements from which those of the ground are counted: a settlement hides no swings after it [m].
+      real(wp), allocatable :: origin(:, :)
       logical, allocatable :: counts(:)      !< (nodes) On ground whose strain of many cycles is too large.
       logical :: told = .false.
    contains
@@ -46,6 +49,7 @@ contains
       call archive%exchange_allocatable('sense', self%sense, '1', 'ways that they go')
       call archive%exchange_allocatable('turns', self%turns, '1', 'turns so far')
       call archive%exchange('largest', self%largest, 'm', 'largest displacement that was doubled last')
+      call archive%exchange_allocatable('origin', self%origin, 'm', 'displacements from which swings are counted')
       call archive%leave('cycles')
    end subroutine exchange
 
@@ -57,6 +61,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (event == BEGINS) call begin_to_count(self, run)
+      if (event == STAGE_BEGINS) call leave_settlement(self, run)
       if (event == STEP) call count_turns(self, run)
    end subroutine hear
 
@@ -73,10 +78,27 @@ contains
          end do
       end associate
       if (run%steps > 0) return
+      self%origin = run%state%x(:DISPLACEMENTS, :)
       self%farthest = [(amplitude_at(run%model%amplitudes(i), run%state%time), i=1, size(run%model%amplitudes)), &
-                       run%state%x(:DISPLACEMENTS, :)]
+                       0*self%origin]
       allocate (self%sense(size(self%farthest)), self%turns(size(self%farthest)), source=0)
    end subroutine begin_to_count
+
+   !> Where motion begins after stages without inertia the ground is counted anew, from where they left it.
+   subroutine leave_settlement(self, run)
+      class(cycles_alarm_t), intent(inout) :: self
+      type(run_t), intent(in) :: run
+      integer :: n
+
+      if (run%at%stage == 1 .or. .not. has_inertia(run%stage%kind)) return
+      if (has_inertia(run%model%stages(run%at%stage - 1)%kind)) return
+      n = size(run%model%amplitudes)
+      self%origin = run%state%x(:DISPLACEMENTS, :)
+      self%largest = 0.0_wp
+      self%farthest(n + 1:) = 0.0_wp
+      self%sense(n + 1:) = 0
+      self%turns(n + 1:) = 0
+   end subroutine leave_settlement
 
    !> Counts the turns of the histories that act in the stage and of the displacements of the ground, and tells when one
    !> has many, once, on standard error.
@@ -100,7 +122,7 @@ contains
          call follow(factor, least, self%farthest(i), self%sense(i), self%turns(i))
       end do
       if (.not. any(self%counts)) return
-      call follow_ground(self, run%next%x(:DISPLACEMENTS, :), n)
+      call follow_ground(self, run%next%x(:DISPLACEMENTS, :) - self%origin, n)
       if (self%told .or. maxval(self%turns) <= MANY_REVERSALS) return
       self%told = .true.
       at = maxloc(self%turns, 1)
@@ -123,7 +145,7 @@ contains
    !> Counts the turns of displacements. When the largest one has doubled, turns before it are small and count no more.
    subroutine follow_ground(self, u, n)
       class(cycles_alarm_t), intent(inout) :: self
-      real(wp), intent(in) :: u(:, :)   !< (2, nodes) [m]
+      real(wp), intent(in) :: u(:, :)   !< (2, nodes) From the origin [m].
       integer, intent(in) :: n          !< Histories before them.
       real(wp) :: largest
       integer :: i, k
