@@ -30,8 +30,9 @@ module material_mud
       'hysteresis', 'isotropic kept off', 'no direction', 'minimum step', 'cut-off', 'tensile', &
       'turning points forgotten']
 
-   character(*), parameter :: SUCTION_KEYS(*) = [character(NAME_LENGTH) :: 'P_a', 'Omega', 'n_x', 'm_x', 'S_max', &
-      'S_min', 'b_1', 'b_2', 'hysteresis', 'P_aw', 'n_w', 'm_w', 'b_d', 'b_w']
+   !> Parameters that act with suction alone; those of bonding only where the air that S_max leaves does not bond, too.
+   character(*), parameter :: SUCTION_KEYS(*) = [character(NAME_LENGTH) :: 'P_a', 'Omega', 'n_x', 'm_x', 'S_min', &
+      'hysteresis', 'P_aw', 'n_w', 'm_w', 'b_d', 'b_w'], BONDING_KEYS(*) = [character(NAME_LENGTH) :: 'b_1', 'b_2']
 
    type, extends(material_t) :: mud_t
       real(wp), allocatable :: props(:)      !< PROPS as the registry of the library has them.
@@ -105,6 +106,7 @@ contains
       law%overcounts_cycles = .true.
       law%e_0 = law%props(property_index('e_0'))
       law%suction_keys = SUCTION_KEYS
+      if (.not. law%props(property_index('S_max')) < 1.0_wp) law%suction_keys = [law%suction_keys, BONDING_KEYS]
       law%n_guards = size(GUARDS)
       law%guard_names(:size(GUARDS)) = GUARDS
       law%n_state = mud_prepared_statev(law%prepared)

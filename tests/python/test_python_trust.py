@@ -7,8 +7,10 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import numpy as np
+from scipy import stats
 
 from checking import build, check, light, needs_plain_library, root, work
 
@@ -315,6 +317,35 @@ def test_rows_whose_errors_follow_each_other_count_once():
     check("noise has as many observations as rows", observations(noise) > 0.8 * 120, observations(noise))
     check("without an observation left over the told scatter counts", spread_of([np.full(2, 1e-6)], 5) >= 1.0 / 2)
     check("a perfect fit keeps the error of the simulations", spread_of([np.zeros(40)] * 2, 3) == NOISE**2)
+
+
+def test_the_cap_of_the_told_scatter_holds_where_the_fit_agrees_with_it():
+    # Six rows for five variables: one degree of freedom is left over.
+    rows = np.array([1.0, -1.0, 0.2, -0.3, 1.2, -1.1]) / np.sqrt(6)
+    quiet, loud = rows / np.linalg.norm(rows) * 0.5, rows / np.linalg.norm(rows) * 3
+    student = (stats.t.ppf(0.975, 1) / stats.norm.ppf(0.975)) ** 2
+    told = [spread_of([curve], 5) for curve in (quiet, loud)]
+    check("within the told scatter it is the most", abs(told[0] - 2 / 6) < 1e-12, told)
+    check("beyond it Student's t is", abs(told[1] / (9 * student) - 1) < 1e-12, told)
+
+
+def test_weights_of_tests_make_no_interval_narrower():
+    # 8 tests of 20 rows with noise, of which six have another weight, by the variance that a fit takes of them; weights
+    # of all tests together change nothing.
+    use = SimpleNamespace(rows=range(20), scatter={"q": 1.0})
+    part = SimpleNamespace(numbers=range(8), variables=range(4))
+    for weights in ([1.0] * 2 + [0.1] * 6, [1.0] * 2 + [3.5] * 6, [3.5] * 8):
+        random, held = np.random.default_rng(4), []
+        fit = SimpleNamespace(evaluator=SimpleNamespace(items=[SimpleNamespace(weight=w, use=use) for w in weights]))
+        weight = np.repeat(weights, 20)
+        for _ in range(150):
+            matrix, measured, shares = linear(random, 0.3 * random.standard_normal((8, 20)), 4, 20)
+            matrix, measured = weight[:, None] * matrix, weight * measured
+            found = np.linalg.lstsq(matrix, measured, rcond=None)[0]
+            variance = Fit.variance(fit, matrix @ found - measured, part)
+            held += list(np.abs(found - shares) < 1.96 * np.sqrt(np.diag(posterior(matrix, variance))))
+        check(f"intervals of 95 % hold the truth with weights from {weights[0]:g} to {weights[-1]:g}",
+              np.mean(held) > 0.93, np.mean(held))
 
 
 def test_intervals_of_a_retention_curve_hold_the_truth():

@@ -373,7 +373,7 @@ contains
       tangent = 0   ! where PROPS have none, they fail before it matters
       if (is_finite(props(P_TANGENT))) tangent = nint(min(max(props(P_TANGENT), 0.0_wp), 3.0_wp))
       call write_increment(path, trim(place%door)//', '//place_text(place), props, stress, statev, d_strain, suction, &
-                           d_suction, tangent, report, problem)
+                           d_suction, tangent, report, .true., problem)
       if (problem == '') return
       inquire (file=path, exist=taken)   ! by another thread or process, a moment ago
       if (.not. taken) call remark_on_saving(trim(problem)//', '//path)

@@ -11,11 +11,12 @@ module mud_save
    use mud_messages, only: status_text, report_text
    use mud_params, only: options_of
    use mud_prepared, only: prepared_t, find_prepared
-   use mud_registry, only: NPROPS, P_TANGENT, P_E_0, PROPERTIES, COMPONENTS, S_LAYOUT, S_VOID_RATIO, &
+   use mud_registry, only: NPROPS, P_TANGENT, P_E_0, PROPERTIES, COMPONENTS, S_VOID_RATIO, &
       S_SATURATION, S_SUCTION, statev_name
    use mud_state, only: statev_size
-   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_STATE, &
+   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, &
       MUD_NOT_WRITTEN
+   use mud_tensor, only: within
    use mud_to_host, only: put, get
    implicit none (type, external)
    private
@@ -86,7 +87,7 @@ contains
       if (whole .and. name /= '') then
          call host_increment(material%par, stress_in, statev_in, dstrain_in, suction, tangent, output, report)
          call write_increment(name, whence, material%props, stress_in, statev_in, dstrain_in, statev_in(S_SUCTION), &
-                              suction_change(statev_in(S_SUCTION), suction), tangent, report, problem)
+                              suction_change(statev_in(S_SUCTION), suction), tangent, report, .false., problem)
       end if
       if (problem == '') return
       c_save_increment = MUD_NOT_WRITTEN
@@ -97,12 +98,13 @@ contains
    !> NPROPS, statev(:) with the numbers of a point; tension positive, engineering shear [-], stress and suction in the
    !> unit of p_atm.
    subroutine write_increment(path, origin, props, stress, statev, d_strain, suction, d_suction, tangent, report, &
-                              problem)
+                              begins, problem)
       character(*), intent(in) :: path, origin
       real(wp), intent(in), contiguous :: props(:)
       real(wp), intent(in) :: stress(6), statev(:), d_strain(6), suction, d_suction
       integer, intent(in) :: tangent
       type(report_t), intent(in) :: report
+      logical, intent(in) :: begins          !< The caller begins points that have no past.
       character(*), intent(out) :: problem   !< Blank if the file is written.
       type(c_ptr) :: file
       real(wp) :: ratio
@@ -144,16 +146,16 @@ contains
       do i = 1, 6
          call line('      '//trim(bits(-stress(i)))//'   ! '//COMPONENTS(i))
       end do
-      if (.not. never_began(statev) .or. (report%status == MUD_BAD_STATE .and. report%index == S_LAYOUT)) then
+      if (.not. (begins .and. never_began(statev))) then
          call line('   state_variables =')
          do i = 1, n
             call line('      '//trim(bits(statev(i)))//'   ! '//trim(statev_name(i)))
          end do
       else   ! The start was refused, and is made once more.
          ratio = statev(S_VOID_RATIO)
-         if (.not. abs(ratio) > 0.0_wp) ratio = props(P_E_0)
+         if (within(ratio, 0.0_wp)) ratio = props(P_E_0)
          call line('   void_ratio = '//bits(ratio))
-         if (abs(statev(S_SATURATION)) > 0.0_wp) call line('   saturation = '//bits(statev(S_SATURATION)))
+         if (.not. within(statev(S_SATURATION), 0.0_wp)) call line('   saturation = '//bits(statev(S_SATURATION)))
       end if
       call line('/')
       call line('&stage')

@@ -395,7 +395,7 @@ contains
       inc%p_c0 = 0.0_wp
       inc%d_pc = 0.0_wp
       inc%rho = 0.0_wp
-      inc%exit = 0.0_wp
+      inc%exit = 1.0_wp
       inc%suction%bonds = .false.
       inc%rests = .false.
       inc%inside = .false.
@@ -405,6 +405,7 @@ contains
          call take_increment(j, inc, q)
          call ask(par, j, inc, 0.0_wp, y, 0.0_wp*AXIAL, q)
       end do
+      q%strain = 0.0_wp
       q%e = inc%e0
       q%suction = 0.0_wp
       q%ends_bonded = 0.0_wp

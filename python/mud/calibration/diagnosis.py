@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import pathlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -89,7 +89,8 @@ def diagnose(
     for part in fit.parts:
         mine = [i for i, v in enumerate(fit.variables) if v in part.variables]
         variance = fit.variance(fit.evaluator.residuals([everything], part.numbers)[0], part)
-        covariance[np.ix_(mine, mine)] = posterior(jacobian[:, mine], variance)
+        own = _central(fit, [fit.variables[i] for i in mine], everything, part.numbers)
+        covariance[np.ix_(mine, mine)] = posterior(own, variance)
     deviations = np.sqrt(np.diag(covariance))
     findings = []
     for i, variable in enumerate(both):
@@ -162,11 +163,13 @@ def _share_of_tenth(variable: Variable, value: float) -> float:
     return 0.1 * abs(value) / (variable.upper - variable.lower)
 
 
-def _central(fit: Fit, variables: list[Variable], values: Mapping[str, float]) -> np.ndarray:
+def _central(
+    fit: Fit, variables: list[Variable], values: Mapping[str, float], tests: Sequence[int] | None = None
+) -> np.ndarray:
     base = [v.share(values[v.name]) for v in variables]
     ends = [(min(s + STEP, 1.0), max(s - STEP, 0.0)) for s in base]
     sets = [{**values, v.name: v.value(end)} for v, pair in zip(variables, ends) for end in pair]
-    residuals = fit.evaluator.residuals(sets)
+    residuals = fit.evaluator.residuals(sets, tests)
     return np.stack(
         [(residuals[2 * i] - residuals[2 * i + 1]) / (pair[0] - pair[1]) for i, pair in enumerate(ends)], axis=1
     )

@@ -397,10 +397,13 @@ class Fit:
         return rms(residual, self._curves(tests))
 
     def variance(self, residual: np.ndarray, part: Part) -> float:
-        """``spread_of`` a part. residual : of its tests."""
-        items = [self.evaluator.items[i] for i in part.numbers]
-        ends = np.cumsum([len(item.use.rows) for item in items for _ in item.use.scatter])
-        return spread_of(np.split(residual, ends)[:-1], len(part.variables))
+        """``spread_of`` a part, without the weights of its tests, over the largest one: that bounds the variance of a fit whose
+        tests weigh differently. residual : of its tests."""
+        items = [item for item in (self.evaluator.items[i] for i in part.numbers) for _ in item.use.scatter]
+        ends = np.cumsum([len(item.use.rows) for item in items])
+        heaviest = max((item.weight for item in items), default=1.0)
+        curves = [curve / item.weight for curve, item in zip(np.split(residual, ends), items) if item.weight > 0]
+        return heaviest**2 * spread_of(curves, len(part.variables))
 
     def _tell(self, what: str, sets: int, cost: float, tests: Sequence[int]) -> None:
         self.progress.step(what, sets * len(tests) / len(self.evaluator.items), cost)
@@ -422,7 +425,7 @@ def observations(curves: Sequence[np.ndarray]) -> float:
 def spread_of(curves: Sequence[np.ndarray], variables: int) -> float:
     """Variance that belongs to a sum of squares over curves: RSS/(n - p) of n independent observations and p fitted variables,
     wider by Student's t. Where the fit leaves less than one observation over, the scatter that was told counts, or a larger
-    misfit, with half of the observations used up.
+    misfit, with half of the observations used up; so does that scatter where the fit agrees with it and t is wider.
 
     curves : residuals in standard deviations over the root of the number of rows.
     """
@@ -431,7 +434,8 @@ def spread_of(curves: Sequence[np.ndarray], variables: int) -> float:
     squares, n = sum(float(c @ c) for c in curves), observations(curves)
     most = 2 * max(squares, len(curves)) / n
     if n >= variables + 1:
-        most = min(most, squares / (n - variables) * (t.ppf(SIDE, n - variables) / norm.ppf(SIDE)) ** 2)
+        left = squares / (n - variables) * (t.ppf(SIDE, n - variables) / norm.ppf(SIDE)) ** 2
+        most = min(most, left) if squares <= len(curves) else left
     return max(float(most), NOISE**2)
 
 
