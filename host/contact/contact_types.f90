@@ -79,6 +79,8 @@ contains
          text = trim(text)//' has a normal that misses the master edge opposite by '//trim(value)//' of its '// &
                 'length: the surfaces are too strongly curved for their distance; refine the edges, lower the '// &
                 'search radius or cut the step'
+      case default
+         text = 'contact: no fault'
       end select
    end subroutine contact_message
 

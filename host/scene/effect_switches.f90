@@ -26,7 +26,7 @@ module effect_switches
       character(23) :: effect
       character(9) :: group
       character(17) :: key         !< Empty: a group of the name says it.
-      character(14) :: with        !< Words that say it; empty: any value but `without`.
+      character(14) :: with        !< Words that say it; empty: any value but `without`, of the soil one above 0.
       character(12) :: without     !< Value of the key without the effect; empty: the group is left out.
       logical :: makes = .true.    !< Else it goes with the effect, and does not make one.
    end type switch_t

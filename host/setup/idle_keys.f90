@@ -115,12 +115,14 @@ contains
          character(LENGTH) :: material
          integer :: i
 
-         everywhere = .true.
+         everywhere = .false.
          do i = 1, size(scene%as_read)
             if (scene%as_read(i)%name /= 'region') cycle
             material = ''
             call get_text(scene%as_read(i), 'material', material)
-            if (material == name_of(group)) everywhere = everywhere .and. given(scene%as_read(i), 'void_ratio')
+            if (material /= name_of(group)) cycle
+            everywhere = given(scene%as_read(i), 'void_ratio')
+            if (.not. everywhere) return
          end do
       end function replaced_everywhere
    end subroutine judge_law

@@ -16,7 +16,7 @@ module newton_step
    use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
-      use prescribed_values, only: constraint_t, constrain, loads_of_water
+   use prescribed_values, only: constraint_t, constrain, loads_of_water
    use stress_tolerance, only: follow_newton, is_tight
    use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
    use solution, only: solution_t
