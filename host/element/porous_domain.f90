@@ -331,15 +331,17 @@ contains
       end associate
    end subroutine keep_element_state
 
-   !> Copies a state. The laws of a step are not handed on.
+   !> Copies a state. Each keeps its own laws of a step, which are put aside meanwhile.
    subroutine copy_state(from, to)
-      type(model_state_t), intent(in) :: from
+      type(model_state_t), intent(inout) :: from   !< It stays as it is.
       type(model_state_t), intent(inout) :: to
-      type(material_slot_t), allocatable :: laws(:)
+      type(material_slot_t), allocatable :: laws(:), laws_of_from(:)
 
+      call move_alloc(from%laws, laws_of_from)
       call move_alloc(to%laws, laws)
       to = from
       call move_alloc(laws, to%laws)
+      call move_alloc(laws_of_from, from%laws)
    end subroutine copy_state
 
    !> Exchanges a state with an archive. Gravity, parts of the ground and laws follow from the scene and the time.

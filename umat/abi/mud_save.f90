@@ -14,8 +14,7 @@ module mud_save
    use mud_registry, only: NPROPS, P_TANGENT, P_E_0, PROPERTIES, COMPONENTS, S_VOID_RATIO, &
       S_SATURATION, S_SUCTION, statev_name
    use mud_state, only: statev_size
-   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, &
-      MUD_NOT_WRITTEN
+   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
    use mud_tensor, only: within
    use mud_to_host, only: put, get
    implicit none (type, external)

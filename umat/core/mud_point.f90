@@ -77,9 +77,7 @@ contains
          call turn_around(it%inc%way_t, course)
          if (follows) call follow_turn(course%with_increment, sens)
       end do
-      call end_update(par, course, it, blocks)
-      if (tangent /= TANGENT_NONE) call elastic_blocks(par, it%state, blocks)
-      call give_tangent(par, tangent, n > 0, it, sens, blocks)
+      call end_update(par, tangent, n > 0, course, it, sens, blocks)
    end subroutine update_point
 
    !> The tangent of an update that is over.
@@ -143,11 +141,14 @@ contains
       it%trial%divides = .false.
    end subroutine begin_update
 
-   !> The state at the end of the increment, and the slopes of its S_w.
-   pure subroutine end_update(par, course, it, blocks)
+   !> The state at the end of the increment, the slopes of its S_w, and the tangent.
+   pure subroutine end_update(par, tangent, moved, course, it, sens, blocks)
       type(params_t), intent(in) :: par
+      integer, intent(in) :: tangent
+      logical, intent(in) :: moved   !< as give_tangent has it
       type(course_t), intent(in) :: course
       type(integration_t), intent(inout) :: it
+      type(sensitivity_t), intent(in) :: sens
       type(blocks_t), intent(inout) :: blocks
       type(saturation_t) :: sat
       real(wp) :: with_turn(2)
@@ -156,6 +157,9 @@ contains
       if (it%size > 0.0_wp .and. it%inc%rho > 0.0_wp) it%state%from_centre = end_in_domain(it%inc)
       call finish_state(par, it%inc%suction, it%state, sat)
       call end_saturation(sat, with_turn, it, blocks)
+      if (tangent == TANGENT_NONE) return
+      call elastic_blocks(par, it%state, blocks)
+      call give_tangent(par, tangent, moved, it, sens, blocks)
    end subroutine end_update
 
    !> Void ratio and suction at the end of the increment, and the branch of S_w.

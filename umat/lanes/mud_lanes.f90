@@ -96,9 +96,7 @@ contains
          if (it(j)%size > 0.0_wp) call list_cuts(par, it(j)%inc, course, of(j)%cuts, of(j)%phases)
          of(j)%together = of(j)%phases > 0
          if (.not. of(j)%together) then
-            call end_update(par, course, it(j), blocks(j))
-            call elastic_blocks(par, it(j)%state, blocks(j))
-            call give_tangent(par, tangent, .false., it(j), of(j)%sens, blocks(j))
+            call end_update(par, tangent, .false., course, it(j), of(j)%sens, blocks(j))
             cycle
          end if
          of(j)%depth = it(j)%state%memory%depth
@@ -151,7 +149,7 @@ contains
          call give_end(par, j, q, it(j)%state, sat)
          if (it(j)%state%gap > 0.0_wp) then
             call finish_state(par, it(j)%inc%suction, it(j)%state, sat)
-            call elastic_blocks(par, it(j)%state, blocks(j))
+            if (tangent /= TANGENT_NONE) call elastic_blocks(par, it(j)%state, blocks(j))
          else if (tangent /= TANGENT_NONE) then
             call blocks_of_moduli(q%k(j), q%g(j), blocks(j))
          end if
