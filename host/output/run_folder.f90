@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Observer that owns the folder of a run: one run at a time writes there, and a restart finds the run that it goes on
-!> with. A run holds a lock on the file `running`, which the system takes back when its process ends, however it does.
+!> with. A run holds a lock on the file `lock`, which the system takes back when its process ends, however it does. The
+!> file stays: were it removed, a run that has opened it would lock what the next one cannot see.
 module run_folder
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
    use archive, only: archive_t
@@ -10,6 +11,7 @@ module run_folder
    use run_observer, only: observer_t, FITS, BEGINS, ENDS
    use run_state, only: run_t
    use scene_parts, only: FINGERPRINT_LENGTH
+   use warnings, only: print_warning
    implicit none (type, external)
    private
    public :: folder_observer_t
@@ -22,7 +24,7 @@ module run_folder
       procedure :: hear
    end type folder_observer_t
 
-   character(*), parameter :: LOCK_FILE = 'running'
+   character(*), parameter :: LOCK_FILE = 'lock'
    integer(c_int), parameter :: ALONE = 6, FREE = 8   !< Operations of flock: exclusive without waiting, unlock.
    integer(c_int), parameter :: ACCESS = 438          !< For all to read and write, as the user's mask allows.
 
@@ -42,11 +44,6 @@ module run_folder
          import :: c_int
          integer(c_int), value :: file
       end function close_number
-
-      integer(c_int) function unlink(path) bind(c)
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-      end function unlink
    end interface
 contains
    !> Exchanges the fingerprint of the scene that began the run.
@@ -76,14 +73,11 @@ contains
          end if
          call lock_folder(self%folder, self%lock, fault)
       case (ENDS)
-         if (self%lock < 0) return
-         done = unlink(self%folder//'/'//LOCK_FILE//c_null_char)
-         done = close_number(self%lock)
+         if (self%lock >= 0) done = close_number(self%lock)
       end select
    end subroutine hear
 
-   !> Takes a folder; one that cannot be written to is told with its first table. Fault EXIT_OUTPUT: another run writes
-   !> to it.
+   !> Takes a folder. Fault EXIT_OUTPUT: another run writes to it, or this one cannot.
    subroutine lock_folder(folder, lock, fault)
       character(*), intent(in) :: folder
       integer(c_int), intent(out) :: lock
@@ -91,10 +85,17 @@ contains
       integer(c_int) :: done
 
       lock = creat(folder//'/'//LOCK_FILE//c_null_char, ACCESS)
-      if (lock < 0) return
+      if (lock < 0) then
+         call raise(fault, EXIT_OUTPUT, folder//'/'//LOCK_FILE//' cannot be written, and without it nothing keeps '// &
+                    'another run out of the folder: choose another --output.')
+         return
+      end if
       if (flock(lock, ALONE) == 0) return
-      ! A file system without locks refuses this too.
-      if (flock(lock, FREE) /= 0) return
+      if (flock(lock, FREE) /= 0) then
+         call print_warning('the file system of '//folder//' has no locks: nothing keeps another run out of the '// &
+                            'folder.')
+         return
+      end if
       done = close_number(lock)
       lock = -1
       call raise(fault, EXIT_OUTPUT, 'Another run writes its results to '//folder//' (it holds the file '''// &

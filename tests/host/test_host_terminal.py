@@ -130,22 +130,38 @@ def test_a_second_run_in_a_folder_is_refused_while_the_first_lives():
     second = run(scene, out)
     check("the second is refused", second.returncode == 4 and "choose another --output" in second.stderr
           and f"Another run writes its results to {out}" in second.stderr, second.stderr)
-    check("and leaves the file of the first", (out / "running").exists())
     elsewhere = run(written("small", SMALL), work / "elsewhere")
     check("another folder is free", elsewhere.returncode == 0, elsewhere.stderr)
-    check("the folder is free after a run", not (work / "elsewhere/running").exists())
     first.kill()
     first.wait()
-    check("a killed run leaves its file", (out / "running").exists())
-    over = run(written("small", SMALL), out, "--quiet")
-    check("which is taken over", over.returncode == 0 and not (out / "running").exists(), over.stderr)
-    (out / "running").write_text("what a program left here\n")
+    check("a killed run holds up nobody", run(written("small", SMALL), out, "--quiet").returncode == 0)
+    (out / "lock").write_text("what a program left here\n")
     free = run(work / "small.nml", out, "--quiet")
-    check("a file that nobody holds is taken over",
-          free.returncode == 0 and not (out / "running").exists(), free.stderr)
-    with open(out / "running", "w") as held:
+    check("a file that nobody holds is taken over", free.returncode == 0, free.stderr)
+    with open(out / "lock", "w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         check("one that another process holds is not", run(work / "small.nml", out).returncode == 4)
+
+
+def test_runs_one_after_the_other_lock_one_file():
+    # A run that has opened the file before the one before it ends must not lock a file that has lost its name.
+    scene, out = written("small", SMALL), work / "in_turn"
+    files = set()
+    for _ in range(2):
+        done = run(scene, out, "--quiet")
+        check("the folder is free", done.returncode == 0, done.stderr)
+        files.add((out / "lock").stat().st_ino)
+    check("the file stays", len(files) == 1, files)
+
+
+def test_a_folder_that_cannot_be_locked_is_refused():
+    # A folder of that name, or a file of another user, cannot be written: then two runs would mix their files.
+    out = work / "no_lock"
+    (out / "lock").mkdir(parents=True)
+    done = run(written("small", SMALL), out, "--quiet")
+    check("refused", done.returncode == 4 and f"{out}/lock cannot be written" in done.stderr
+          and len(done.stderr.splitlines()) == 1, done.stderr)
+    check("nothing is written", [path.name for path in out.iterdir()] == ["lock"])
 
 
 def test_a_killed_run_leaves_whole_rows():
@@ -173,7 +189,8 @@ def test_ctrl_c_ends_after_the_step_and_says_how_to_go_on():
         check(f"{number.name}: the last row is the time told", told and abs(float(told[1])/rows["time"][-1] - 1) < 1e-5,
               error)
         check(f"{number.name}: fields of that time", (out / "nodes_s.csv").exists())
-        check(f"{number.name}: the folder is free", not (out / "running").exists())
+        with open(out / "lock") as free:
+            fcntl.flock(free, fcntl.LOCK_EX | fcntl.LOCK_NB)   # raises where the folder is not free
     check("the newest checkpoint is named", f"--restart {out}/checkpoint.h5 goes on" in error, error)
     more = begun(scene, out, "--restart", out / "checkpoint.h5")
     before = rows["time"][-1]
