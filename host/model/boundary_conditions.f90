@@ -6,14 +6,15 @@ module boundary_conditions
    use limited_pressures, only: begin_sides
    use model_types, only: model_t, problem_t, factor_at, fix_t, unknowns_of
    use prescribed_values, only: constraint_t, is_released
-   use scene_parts, only: acts_in, stage_t, PRESCRIBED_P_A
+   use scene_parts, only: acts_in, PRESCRIBED_P_A
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: new_constraint, constrain_step, complete_constraint, acts, value_of, follow_accelerations, &
              starting_accelerations, prescribing_fixes, forces_of_supports
 
-   real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Of a time, relative.
+   real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
+   real(wp), parameter :: SPACINGS = 8.0_wp       !< Of numbers, by which a sum of stages may miss it.
 contains
    !> Nothing prescribed, nothing loaded; plates have their mass. Extents: see constraint_t.
    function new_constraint(model) result(constraint)
@@ -167,14 +168,16 @@ contains
                    factor_at(model, fix%amplitude, time + (0.5_wp - scheme%gamma)*scheme%dt))
    end function acceleration_at
 
-   !> Whether a &fix acts in a step.
-   pure logical function acts(fix, stage, time)
+   !> Whether a &fix acts in a step. Times that are sums, 0.1 s and 0.2 s, are those of the scene, 0.3 s.
+   pure logical function acts(fix, problem, time)
       type(fix_t), intent(in) :: fix
-      type(stage_t), intent(in) :: stage
+      type(problem_t), intent(in) :: problem
       real(wp), intent(in) :: time   !< At the end of the step.
+      real(wp) :: rounding_of_time
 
-      acts = acts_in(fix%stages, stage%name) .and. time > fix%from + ROUNDING*abs(time) .and. &
-             time <= fix%until + ROUNDING*abs(time)
+      rounding_of_time = max(SPACINGS*spacing(time), ROUNDING*problem%at%nominal*problem%at%factor)
+      acts = acts_in(fix%stages, problem%stage%name) .and. time > fix%from + rounding_of_time .and. &
+             time <= fix%until + rounding_of_time
    end function acts
 
    !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:
@@ -189,7 +192,7 @@ contains
       air_by = 0
       do i = 1, size(problem%model%fixes)
          associate (fix => problem%model%fixes(i), groups => problem%model%domain%mesh%groups)
-            if (.not. acts(fix, problem%stage, time) .or. fix%limits) cycle
+            if (.not. acts(fix, problem, time) .or. fix%limits) cycle
             do k = 1, size(groups(fix%group)%nodes)
                node = groups(fix%group)%nodes(k)
                if (is_released(problem%constraint, i, node)) cycle

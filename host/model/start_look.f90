@@ -19,7 +19,7 @@ module start_look
    public :: warn_of_start
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< Of a pressure.
-   real(wp), parameter :: ROUNDED = 1.0e-12_wp   !< Of a time, relative.
+   real(wp), parameter :: SPACINGS = 8.0_wp      !< Of numbers, by which a sum of stages may miss a time.
    real(wp), parameter :: AT_ONCE = 0.05_wp      !< Share of the largest velocity of a motion: no start from rest.
    real(wp), parameter :: HARD = 1.0e4_wp        !< [kPa] Of a plate; above it a force in N is likely.
 contains
@@ -286,7 +286,7 @@ contains
          if (.not. (model%stages(s)%zero_displacements .and. acts_in(fix%stages, model%stages(s)%name) .and. &
                     acts_in(fix%stages, model%stages(s + 1)%name))) cycle
          zeroed = sum(model%stages(:s)%duration)
-         if (fix%from >= zeroed*(1 - ROUNDED) .or. fix%until <= zeroed*(1 + ROUNDED)) cycle
+         if (fix%from >= zeroed - SPACINGS*spacing(zeroed) .or. fix%until <= zeroed + SPACINGS*spacing(zeroed)) cycle
          if (.not. abs(factor_at(model, fix%amplitude, zeroed))*max(abs(fix%value), abs(fix%value_slope)) > 0.0_wp) &
             cycle
          call print_warning(place_of(fix)//'stage '//trim(model%stages(s)%name)//' sets displacements to zero, and '// &

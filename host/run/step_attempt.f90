@@ -13,6 +13,7 @@ module step_attempt
    use porous_domain, only: copy_state
    use run_state, only: run_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
+   use step_landings, only: LEAST_SPACINGS
    use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
    use scene_parts, only: acts_in
    use solution, only: stage_state_t
@@ -21,7 +22,6 @@ module step_attempt
    public :: begin_stage, try_step
 
    integer, parameter :: CUTS_IN_VAIN = 2   !< At the start of a static stage, until what acts at once is spread.
-   real(wp), parameter :: LEAST_SPACINGS = 16.0_wp      !< Spacings of numbers at the present time: its rounding.
 contains
    !> Sets a run at the start of a stage that it has entered: terms, prescribed values, control of the steps, first
    !> accelerations. docs/theory/host.md section 4.1. Faults: those of terms and set_step and, for the accelerations,

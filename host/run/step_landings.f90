@@ -15,10 +15,11 @@ module step_landings
    implicit none (type, external)
    private
    public :: next_time, end_of_given
-   public :: is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST
+   public :: is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, LEAST_SPACINGS
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
    real(wp), parameter :: SHORTEST = 1.0e-8_wp    !< Smallest step as a share of the stage.
+   real(wp), parameter :: LEAST_SPACINGS = 16.0_wp   !< Spacings of numbers at a time: a shorter step is its rounding.
    real(wp), parameter :: CHORD_SHARE = 0.1_wp    !< Share of the accuracy that a straight line may leave out.
    real(wp), parameter :: SAME = 1.0e-9_wp        !< Relative difference that is none.
 contains

@@ -9,7 +9,8 @@ module step_size
    use error_norms, only: shift_rates, local_errors, remember, forget, rms
    use generalised_alpha, only: make_scheme, scheme_t, has_rates, has_inertia, is_flow
    use run_state, only: run_t
-   use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST
+   use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST, &
+                            LEAST_SPACINGS
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -126,7 +127,7 @@ contains
       left = run%at%t_start + run%stage%duration - run%state%time
       if (.not. run%stage%controlled) then
          if (allocated(run%stage%ends)) dt = min(left, run%at%factor*(next_end(run) - run%state%time))
-         if (dt > left*(1 - LAST_STEP)) dt = left
+         if (left - dt < max(LAST_STEP*left, LEAST_SPACINGS*spacing(run%state%time))) dt = left
          if (.not. allocated(run%stage%ends)) dt = end_of_given(run, run%state%time + dt) - run%state%time
          return
       end if

@@ -135,7 +135,7 @@ contains
       associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%stage)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i), nodes => groups(model%fixes(i)%group)%nodes)
-               if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
+               if (.not. fix%limits .or. .not. acts(fix, problem, time)) cycle
                do k = 1, size(nodes)
                   ! The water outside, where it stands, else the air.
                   if (.not. is_released(problem%constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, &

@@ -81,6 +81,25 @@ def test_a_support_from_the_end_of_a_stage_on_is_not_there_before():
     near("and is there in the next stage", moved[1], -2e-3)
 
 
+def test_times_of_a_support_are_exact_after_thirty_years():
+    # Half-millisecond steps: the support of 2 ms comes with the one that ends at 2.5 ms, and goes with that of 3.5 ms.
+    late = "&stage name = 'late' analysis = 'static' duration = 0.004 dt = 0.0005 tolerance = 1e-12 /\n"
+    rows, _ = run(BLOCK.format(1e9, 1e9) + late + held + "&load group = 'top' kind = 'pressure' value = 12 /\n"
+                  "&fix group = 'top' field = 'u_z' value = -2e-3 from = 1000000000.002 until = 1000000000.003 /\n",
+                  "late")
+    there = [float(row["corner.u_z"]) < -1.5e-3 for row in rows[-8:]]
+    check("from 2 to 3 ms alone", there == [False]*4 + [True]*2 + [False]*2, there)
+
+
+def test_times_of_a_support_are_those_of_many_steps():
+    # A sum of 292 steps of 0.2 s is 58.40000000000029 s: still the last step up to 58.4 s.
+    rows, _ = run(BLOCK.format(60, 0.2) + held + "&load group = 'top' kind = 'pressure' value = 12 /\n"
+                  "&fix group = 'top' field = 'u_z' value = -2e-3 until = 58.4 /\n", "many")
+    moved = [float(row["corner.u_z"]) for row in rows if abs(float(row["time"]) - 58.5) < 0.15]
+    near("it holds in step 292", moved[0], -2e-3)
+    near("and no longer in the next", moved[1], -1e-3)
+
+
 def test_checkpoints_by_wall_time():
     # Wall time: shorter than any step, so that there is one after every step; the last one is whole and goes on.
     text = BLOCK.format(1, 0.25).replace("fields = 'u'", "fields = 'u' checkpoint_seconds = 1e-9") + held + \
