@@ -17,7 +17,7 @@ module checkpoints
    public :: checkpoint_observer_t, read_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '20', &
+   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '21', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')

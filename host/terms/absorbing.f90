@@ -7,6 +7,7 @@
 module absorbing
    use acting_places, only: facing_edges, acting_stages
    use archive, only: archive_t
+   use boundary_conditions, only: prescribing_fixes
    use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_GROUP, EXIT_MATERIAL
@@ -43,6 +44,7 @@ module absorbing
       !> of water and air over the rate of the pressure, k/(eta c_p) [m/kPa]. (4, edges)
       real(wp), allocatable :: behind(:, :)
       logical, allocatable :: held(:)            !< (unknowns) Displacements of the boundary.
+      real(wp), allocatable :: carried(:)        !< (unknowns) Force that it holds [kN]; 0 where it does not act.
       real(wp), allocatable :: incoming(:)       !< (unknowns) Force of the incoming wave [kN] at a factor of 1.
    end type side_t
 
@@ -112,7 +114,7 @@ contains
             side%edges = facing_edges(problem%model, side%group, acting_stages(problem%model, side%action_t))
             allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
             allocate (side%held(problem%dofs%n), source=.false.)
-            allocate (side%incoming(problem%dofs%n), source=0.0_wp)
+            allocate (side%incoming(problem%dofs%n), side%carried(problem%dofs%n), source=0.0_wp)
             do e = 1, size(side%edges, 2)
                do f = 1, DISPLACEMENTS
                   associate (unknowns => problem%dofs%of(f, side%edges(:, e)))
@@ -160,13 +162,10 @@ contains
       real(wp), dimension(problem%domain%rule) :: suction, s, n
       real(wp) :: strain(6, problem%domain%rule), p(2), rho, c_p, c_s, modulus, shear, slope
       real(wp), allocatable :: before(:, :), after(:, :)
-      integer :: e, g, i, first, last
+      integer :: e, g, first, last
 
       ground = 0.0_wp
-      ! The triangle on its left: of two that share it the other may be no ground.
-      associate (t6 => problem%domain%mesh%t6)
-         e = findloc([(any(t6(4:6, i) == edge(3) .and. t6(1:3, i) == edge(1)), i=1, size(t6, 2))], .true., dim=1)
-      end associate
+      e = element_behind(problem%domain, edge)
       associate (m => problem%domain, state => problem%state, region => &
                  problem%domain%regions(problem%domain%region_of(e)))
          first = (e - 1)*m%rule + 1
@@ -295,13 +294,12 @@ contains
       end subroutine add
    end subroutine add_edge
 
-   !> Dashpots of what has acted, also before a restart. What no side holds any more is freed.
+   !> Dashpots of what has acted, also before a restart. What a side held that acts no longer is freed.
    subroutine begin_stage(self, begins, problem, fault)
       class(absorbing_t), intent(inout) :: self
       logical, intent(in) :: begins
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
-      logical, allocatable :: keeps(:)   !< (unknowns) Of the sides that act.
       integer :: i
 
       if (fault%code /= 0) return
@@ -310,14 +308,11 @@ contains
       end do
       self%at_start = begins
       if (.not. begins) return
-      allocate (keeps(problem%dofs%n), source=.false.)
       do i = 1, size(self%sides)
-         if (acts(self%sides(i), problem%model, problem%at%stage)) keeps = keeps .or. self%sides(i)%held
-      end do
-      do i = 1, size(self%sides)
-         associate (side => self%sides(i), number => problem%at%stage)
-            if (acts(side, problem%model, number - 1) .and. .not. acts(side, problem%model, number)) &
-               where (side%held .and. .not. keeps) problem%constraint%offset = 0.0_wp
+         associate (side => self%sides(i))
+            if (acts(side, problem%model, problem%at%stage)) cycle
+            problem%constraint%offset = problem%constraint%offset - side%carried
+            side%carried = 0.0_wp
          end associate
       end do
    end subroutine begin_stage
@@ -363,7 +358,6 @@ contains
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       logical :: begin_to_act(size(self%sides))
-      real(wp), allocatable :: missing(:)
       integer :: i, e
 
       associate (number => problem%at%stage)
@@ -392,12 +386,100 @@ contains
             return
          end if
       end associate
-      missing = problem%constraint%load_0 - problem%assembly%residual
-      do i = 1, size(begin_to_act)
-         if (begin_to_act(i)) where (self%sides(i)%held) problem%constraint%offset = missing
-      end do
+      call share_forces(self%sides, begin_to_act, problem)
       call copy_state(problem%state, problem%next)
    end subroutine hold_ground
+
+   !> What the balance at rest lacks is held by the sides that begin. Where two of them meet each has the tractions on
+   !> its own edges, so that it can end alone, and a share of what these leave in proportion to them; beside a &fix it
+   !> has these alone.
+   subroutine share_forces(sides, begin_to_act, problem)
+      type(side_t), intent(inout) :: sides(:)
+      logical, intent(in) :: begin_to_act(:)
+      type(problem_t), intent(inout) :: problem   !< After the assembly at rest.
+      real(wp), dimension(problem%dofs%n) :: missing, left, weight, share
+      integer :: holders(problem%dofs%n), by(problem%dofs%n), air_by(size(problem%domain%mesh%x, 2)), i
+
+      call prescribing_fixes(problem, problem%state%time, by, air_by)
+      associate (c => problem%constraint)
+         missing = c%load_0 - problem%assembly%residual - c%offset
+         holders = 0
+         left = missing
+         weight = 0.0_wp
+         do i = 1, size(sides)
+            if (.not. begin_to_act(i)) cycle
+            sides(i)%carried = tractions(problem, sides(i))
+            where (sides(i)%held) holders = holders + 1
+            left = left - sides(i)%carried
+            weight = weight + abs(sides(i)%carried)
+         end do
+         where (by > 0) left = 0.0_wp
+         do i = 1, size(sides)
+            if (.not. begin_to_act(i)) cycle
+            associate (side => sides(i))
+               share = 1.0_wp/max(holders, 1)
+               where (weight > 0.0_wp) share = abs(side%carried)/weight
+               where (.not. side%held)
+                  side%carried = 0.0_wp
+               elsewhere (holders == 1 .and. by == 0)
+                  side%carried = missing
+               elsewhere
+                  side%carried = side%carried + share*left
+               end where
+               c%offset = c%offset + side%carried
+            end associate
+         end do
+      end associate
+   end subroutine share_forces
+
+   !> Forces of the total stress of the elements behind a side, mean of their points, on its edges [kN]. (unknowns)
+   function tractions(problem, side) result(force)
+      type(problem_t), intent(in) :: problem
+      type(side_t), intent(in) :: side
+      real(wp) :: force(problem%dofs%n)
+      type(edge_point_t) :: points(PER_EDGE)
+      real(wp) :: stress(3), p(2), traction(2)   !< rr, zz, rz [kPa]; p_w, p_c [kPa]; [kPa m]
+      integer :: k, e, g, i, f, unknown
+
+      force = 0.0_wp
+      associate (m => problem%domain, state => problem%state)
+         do k = 1, size(side%edges, 2)
+            e = element_behind(m, side%edges(:, k))
+            stress = 0.0_wp
+            do g = 1, m%rule
+               p = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
+               associate (point => (e - 1)*m%rule + g)
+                  stress = stress + state%stress([1, 2, 4], point)/m%rule
+                  stress(:2) = stress(:2) - (p(1) + (1 - state%s(point))*p(2))/m%rule
+               end associate
+            end do
+            points = points_of_edge(m, side%edges(:, k))
+            do g = 1, PER_EDGE
+               associate (t => points(g)%tangent)
+                  traction = [stress(1)*t(2) - stress(3)*t(1), stress(3)*t(2) - stress(2)*t(1)]
+               end associate
+               do i = 1, size(points(g)%n)
+                  do f = 1, DISPLACEMENTS
+                     unknown = problem%dofs%of(f, side%edges(i, k))
+                     ! The residual holds against the traction.
+                     if (unknown > 0) force(unknown) = force(unknown) - points(g)%ring*points(g)%n(i)*traction(f)
+                  end do
+               end do
+            end do
+         end do
+      end associate
+   end function tractions
+
+   !> The triangle on the left of an edge: of two that share it the other may be no ground.
+   pure integer function element_behind(domain, edge) result(e)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: edge(3)
+      integer :: i
+
+      associate (t6 => domain%mesh%t6)
+         e = findloc([(any(t6(4:6, i) == edge(3) .and. t6(1:3, i) == edge(1)), i=1, size(t6, 2))], .true., dim=1)
+      end associate
+   end function element_behind
 
    subroutine exchange(self, problem, archive)
       class(absorbing_t), intent(inout) :: self
@@ -408,6 +490,8 @@ contains
       call archive%exchange('offset', problem%constraint%offset, 'kN, m3/s', &
                             'flow that is subtracted, forces that hold the ground')
       do i = 1, size(self%sides)
+         call archive%exchange('carried_'//whole(i), self%sides(i)%carried, 'kN', &
+                               'force that an absorbing boundary holds')
          call archive%exchange('behind_'//whole(i), self%sides(i)%behind, 'kPa s/m, m/kPa', &
                                'impedances of the ground behind an absorbing boundary, outflow over rate of pressure')
       end do

@@ -161,6 +161,40 @@ def test_ground_behind_an_absorbing_side_stays_at_rest():
         (whole / name).read_bytes() == before[name] for name in names))
 
 
+def test_a_side_that_ends_takes_its_share_of_a_corner_with_it():
+    # A uniform stress, sides that begin together or one after the other, and in place of the one that ends the pressure
+    # that it held: nothing moves. The support that holds the base beside a side that begins is released as well.
+    ground = """&scene name = 'c' geometry = '{}' fields = '{}' checkpoint_steps = 3 /
+&mesh r = 0, 2 r_cells = 3 z = 0, 1 z_cells = 2 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 1e-10 law = 'constant' /
+&region material = 'soil' void_ratio = 0.6 rho_s = 2 permeability = 'k' /
+&initial stress = 'uniform' sigma = -30, -50, -30 p_w = 20 /
+&fix group = 'left' field = 'u_r' /
+&load group = 'top' kind = 'pressure' value = {} /
+&point name = 'corner' r = 2 z = 0 /
+&point name = 'middle' r = 1 z = 0.5 /
+""" + stage("one", 0.05, 5e-3) + stage("two", 0.05, 5e-3) + stage("three", 0.05, 5e-3)
+    for fields, water in (("u", 0), ("u-p_w", 20)):
+        sides = {"right": 30 + water, "bottom": 50 + water}
+        for other, ends in (("bottom", "right"), ("right", "bottom")):
+            until = f"&load group = '{ends}' kind = 'pressure' value = {sides[ends]} stages = "
+            whole, late = f"&absorbing group = '{other}' ", f"&absorbing group = '{ends}' "
+            for case, text in (
+                    ("together", whole + "/\n" + late + "stages = 'one' /\n" + until + "'two', 'three' /\n"),
+                    ("later", whole + "/\n" + late + "stages = 'two' /\n" + until + "'one', 'three' /\n"),
+                    ("support", whole + "/\n" + until + "'two', 'three' /\n&fix group = "
+                     f"'{ends}' field = 'u_{'r' if ends == 'right' else 'z'}' stages = 'one' /\n")):
+                name = f"ends_{fields}_{ends}_{case}"
+                geometry = "axisymmetric" if case == "together" else "plane_strain"
+                h, folder = run(ground.format(geometry, fields, 50 + water) + text, name)
+                moved = max(np.abs(h[f"{point}.{u}"]).max() for point in ("corner", "middle") for u in ("u_r", "u_z"))
+                check(f"{name}: nothing moves", moved < 1e-12, moved)
+    before = (folder / "histories.csv").read_bytes()
+    run(ground.format(geometry, fields, 50 + water) + text, name, "--restart", folder / "checkpoint.h5")
+    check("a restart writes the same bytes", (folder / "histories.csv").read_bytes() == before)
+
+
 def test_ground_behind_a_side_given_alike():
     # The ground behind a side is that of the scene, or what rho, c_p and c_s say: given alike they give the same
     # answer, given softer another.
