@@ -28,6 +28,8 @@ module region_builder
    real(wp), parameter :: TIGHT = 1.0e-3_wp       !< Below it the scheme of order 3 costs less.
    !> Names of no curve: the material has a retention of its own. The second is that of older scenes.
    character(8), parameter :: OF_THE_MATERIAL(2) = [character(8) :: 'material', 'mud']
+   !> Units of stress in which nobody gives a reference pressure in kPa: 100 MPa, or a tenth of a kPa.
+   character(3), parameter :: FOREIGN_UNITS(2) = [character(3) :: 'Pa', 'MPa']
 contains
    !> &retention. The fault of its curve is told where a region asks for it.
    subroutine build_retention(k, model)
@@ -69,7 +71,8 @@ contains
       model%domain%permeabilities = [model%domain%permeabilities, law]
    end subroutine build_permeability
 
-   !> The group of a material, whose law checks its own keys. Faults: those of new_material; EXIT_INPUT: tangent = 0.
+   !> The group of a material, whose law checks its own keys. Faults: those of new_material; EXIT_INPUT: tangent = 0, or
+   !> a law in Pa or MPa.
    subroutine build_material(group, model, fault)
       type(group_t), intent(inout) :: group
       type(model_t), intent(inout) :: model
@@ -82,6 +85,12 @@ contains
       call ask_stress(model%step_tolerance, group)
       call new_material(trim(group%name), group, material%law, title, fault)
       if (fault%code /= 0) return
+      if (any(material%law%unit%name == FOREIGN_UNITS)) then
+         call raise(fault, EXIT_INPUT, at_line(group%file, group%line)//'material '''//trim(name)//''' is in '// &
+                    trim(material%law%unit%name)//', as its p_atm tells; scenes are in kPa. Give its parameters in '// &
+                    'kPa (mud_describe udsm FILE --unit kPa lists those of a file).')
+         return
+      end if
       select type (law => material%law)
       type is (mud_t)
          if (law%given_tangent == 0) call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, 'tangent'))// &

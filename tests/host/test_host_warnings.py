@@ -43,6 +43,20 @@ def warnings(text, *words):
     return [line for line in done.stderr.splitlines() if line.startswith("mud_host: warning: ")]
 
 
+def test_a_material_in_another_unit_is_refused():
+    # Toyoura sand in Pa and in MPa, as its own list says it.
+    for unit in ("Pa", "MPa"):
+        listed = subprocess.run([build / "drivers/mud_describe", "udsm", root / "drivers/materials/toyoura.nml",
+                                 "--unit", unit], capture_output=True, text=True, check=True).stdout.splitlines()[1:]
+        values = {line.split()[1]: line.split()[3] for line in listed}
+        (work / "sand.nml").write_text("&material\n" + "".join(f"{key} = {value}\n" for key, value in values.items())
+                                       + "/\n")
+        (work / "scene.nml").write_text(re.sub(r"file = '.*toyoura.nml'", "file = 'sand.nml'", SCENE))
+        done = subprocess.run([host, work / "scene.nml", "--check"], capture_output=True, text=True, env=environment)
+        check(f"{unit}: refused", done.returncode == 2 and f"scene.nml:3: material 'sand' is in {unit}," in done.stderr
+              and len(done.stderr.splitlines()) == 1, done.stderr)
+
+
 DOUBTS = [
     ("tension in MUD", "p_w_slope = -9.81", "p_w = 30", ["tensile at", "points of MUD"]),
     ("surface below the mesh", "surface = 0", "surface = -1", ["surface = -1 m lies below", "'all' at 0 m"]),
@@ -51,8 +65,8 @@ DOUBTS = [
     ("stiffness", "young = 1e6", "young = 1.1e9", ["young = 1.1e9 of &elastic", "a modulus in kPa"]),
     ("material with a stress in another unit", "toyoura.nml'", "toyoura.nml' P_a = 5000",
      ["scene.nml:3: ", "P_a", "usual"]),
-    ("material in another unit than the scene", "toyoura.nml'", "toyoura.nml' p_atm = 101325",
-     ["material 'sand' has a p_atm of 101325", "scenes are in kPa"]),
+    ("material in another unit than the scene", "toyoura.nml'", "toyoura.nml' p_atm = 70",
+     ["material 'sand' has a p_atm of 70", "scenes are in kPa"]),
     ("large mesh", "r = 0, 1, 2", "r = 0, 1, 1002", ["the mesh is 1002 m large"]),
     ("two supports", "'bottom' field = 'u_r'", "'bottom' field = 'u_r' value = 0.001",
      ["u_r of the node at (0, -2) m has two &fix", "'left' and 'bottom'"]),
