@@ -8,6 +8,7 @@ import difflib
 import functools
 import os
 import pathlib
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from ctypes import byref
 
@@ -87,10 +88,11 @@ class TestResult(Mapping):
     def __repr__(self) -> str:
         end = ", ".join(f"{name} {self[name][-1]:.6g}" for name in ("eps_a", "eps_v", "p_eff", "q", "e", "s_w"))
         case = next((r.removeprefix("case: ") for r in self.remarks if r.startswith("case: ")), "test")
-        return (
+        told = (
             f"TestResult({case!r}: {len(self['stage'])} rows, {int(self['stage'][-1])} stages; end: {end}; "
             f"columns {', '.join(self)})"
         )
+        return textwrap.fill(told, 110, subsequent_indent="   ")
 
     def to_frame(self) -> object:
         """The table as a pandas.DataFrame; units and meanings are in its ``attrs``."""
