@@ -11,7 +11,7 @@ module absorbing
    use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_GROUP, EXIT_MATERIAL
-   use faults, only: fault_t, raise
+   use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: make_scheme, STATIC
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
@@ -22,11 +22,12 @@ module absorbing
    use name_search, only: mesh_group, history_named
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: domain_t, copy_state, mixture_density, pressures_at, law_of, COUPLED, UNDRAINED
-   use scene_parts, only: place_of
+   use scene_parts, only: acts_in, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
    use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
+   use warnings, only: print_warning
    implicit none (type, external)
    private
    public :: absorbing_t
@@ -38,6 +39,7 @@ module absorbing
    type, extends(action_t) :: side_t
       real(wp) :: rho = 0.0_wp, c_p = 0.0_wp, c_s = 0.0_wp   !< Of the ground behind; 0: those of the soil.
       real(wp) :: velocity(2) = 0.0_wp           !< Of the incoming wave at a factor of 1 [m/s].
+      logical :: repeats = .false.               !< An earlier one has its dashpots: it brings another wave alone.
       integer :: dashpots = 0                    !< Place of its dashpots in the constraint.
       integer, allocatable :: edges(:, :)        !< (3, edges) Nodes.
       !> Of the ground behind the edges, 0 before the boundary has acted: impedances rho c_p, rho c_s [kPa s/m], outflow
@@ -52,7 +54,7 @@ module absorbing
       type(side_t), allocatable :: sides(:)
       logical :: at_start = .false.              !< Of a stage: what the sides held is not known yet.
    contains
-      procedure :: build_group, begin_run, begin_stage, before_step, exchange
+      procedure :: build_group, build, begin_run, begin_stage, before_step, exchange
    end type absorbing_t
 
    integer, parameter :: AT_NORMAL = 1, AT_SHEAR = 2, AT_WATER = 3, AT_AIR = 4   !< Places in `behind`.
@@ -97,6 +99,90 @@ contains
       self%wanted = .true.
    end subroutine build_group
 
+   !> Finds boundaries that bring another wave through the dashpots of an earlier one. Fault EXIT_INPUT: two that share
+   !> edges are not alike. Warns of motions that a &fix prescribes, so that waves neither leave nor come in.
+   subroutine build(self, model, fault)
+      class(absorbing_t), intent(inout) :: self
+      type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
+      integer :: i, k
+
+      if (.not. self%wanted) return
+      do i = 1, size(self%sides)
+         do k = 1, i - 1
+            if (.not. share_an_edge(self%sides(i), self%sides(k))) cycle
+            self%sides(i)%repeats = are_alike(self%sides(i), self%sides(k))
+            if (self%sides(i)%repeats) cycle
+            call raise(fault, EXIT_INPUT, place_of(self%sides(i))//'this &absorbing has edges of that of line '// &
+                       whole(self%sides(k)%line)//', and their dashpots would count twice there. Another wave '// &
+                       'through the same ones needs the same group, stages, rho, c_p and c_s; else give every edge '// &
+                       'to one.')
+            return
+         end do
+         call look_at_supports(model, self%sides(i))
+      end do
+   contains
+      pure logical function share_an_edge(a, b)
+         type(side_t), intent(in) :: a, b
+         integer :: e
+
+         share_an_edge = .false.
+         associate (groups => model%domain%mesh%groups, others => acting_stages(model, b%action_t))
+            if (.not. any([(any(others == model%stages(e)%name) .and. any(acting_stages(model, a%action_t) == &
+                                                                         model%stages(e)%name), &
+                            e=1, size(model%stages))])) return
+            do e = 1, size(groups(a%group)%edges, 2)
+               share_an_edge = share_an_edge .or. any(groups(b%group)%edges(3, :) == groups(a%group)%edges(3, e))
+            end do
+         end associate
+      end function share_an_edge
+
+      pure logical function are_alike(a, b)
+         type(side_t), intent(in) :: a, b
+         integer :: s
+
+         are_alike = a%group == b%group .and. &
+                     maxval(abs([a%rho - b%rho, a%c_p - b%c_p, a%c_s - b%c_s])) <= 0.0_wp .and. &
+                     all([(acts(a, model, s) .eqv. acts(b, model, s), s=1, size(model%stages))])
+      end function are_alike
+   end subroutine build
+
+   !> A boundary whose motion along its normal is prescribed, and that brings no wave along the other axis; or along
+   !> whose wave the motion is.
+   subroutine look_at_supports(model, side)
+      type(model_t), intent(in) :: model
+      type(side_t), intent(in) :: side
+      logical, dimension(DISPLACEMENTS, size(model%domain%mesh%x, 2)) :: held
+      character(*), parameter :: WORDS(DISPLACEMENTS) = ['u_r', 'u_z']
+      real(wp) :: extent(DISPLACEMENTS)
+      integer :: s, i, f
+
+      associate (nodes => model%domain%mesh%groups(side%group)%nodes, x => model%domain%mesh%x, &
+                 t6 => model%domain%mesh%t6)
+         extent = [(maxval(x(f, nodes)) - minval(x(f, nodes)), f=1, DISPLACEMENTS)]
+         do s = 1, size(model%stages)
+            if (.not. acts(side, model, s)) cycle
+            held = .false.
+            do i = 1, size(model%fixes)
+               associate (fix => model%fixes(i))
+                  if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, model%stages(s)%name)) &
+                     held(fix%field, model%domain%mesh%groups(fix%group)%nodes) = .true.
+               end associate
+            end do
+            do f = 1, DISPLACEMENTS
+               ! Ground that is held throughout has no motion along this axis.
+               if (.not. all(held(f, nodes)) .or. all(held(f, reshape(t6, [size(t6)])))) cycle
+               if (.not. abs(side%velocity(f)) > 0.0_wp .and. &
+                   (extent(f) > extent(3 - f) .or. abs(side%velocity(3 - f)) > 0.0_wp)) cycle
+               call print_warning(place_of(side)//WORDS(f)//' of every node of this &absorbing is prescribed by a '// &
+                  '&fix in stage '//trim(model%stages(s)%name)//': along '//WORDS(f)(3:)//' no wave leaves there '// &
+                  'or comes in. Limit the &fix to other stages.')
+               return
+            end do
+         end do
+      end associate
+   end subroutine look_at_supports
+
    !> Room for the dashpots of the boundaries, and the unknowns that they hold.
    subroutine begin_run(self, problem, fault)
       class(absorbing_t), intent(inout) :: self
@@ -115,6 +201,7 @@ contains
             allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
             allocate (side%held(problem%dofs%n), source=.false.)
             allocate (side%incoming(problem%dofs%n), side%carried(problem%dofs%n), source=0.0_wp)
+            if (side%repeats) cycle
             do e = 1, size(side%edges, 2)
                do f = 1, DISPLACEMENTS
                   associate (unknowns => problem%dofs%of(f, side%edges(:, e)))
@@ -331,8 +418,8 @@ contains
       associate (c => problem%constraint, now => problem%state%time)
          do i = 1, size(self%sides)
             associate (side => self%sides(i))
-               c%linear(side%dashpots)%acts = acts(side, problem%model, problem%at%stage)
-               if (.not. c%linear(side%dashpots)%acts) cycle
+               c%linear(side%dashpots)%acts = acts(side, problem%model, problem%at%stage) .and. .not. side%repeats
+               if (.not. acts(side, problem%model, problem%at%stage)) cycle
                c%load_0 = c%load_0 + factor_at(problem%model, side%amplitude, now)*side%incoming
                c%load_1 = c%load_1 + factor_at(problem%model, side%amplitude, now + dt)*side%incoming
             end associate

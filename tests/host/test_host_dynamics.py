@@ -195,6 +195,50 @@ def test_a_side_that_ends_takes_its_share_of_a_corner_with_it():
     check("a restart writes the same bytes", (folder / "histories.csv").read_bytes() == before)
 
 
+def test_two_waves_come_in_through_one_boundary():
+    # A bar along r, held sideways: pulses of velocity from the right at c_p, 20 ms apart, leave on the left. Two
+    # &absorbing of one group have its dashpots once.
+    bar = column(cells=1).replace("r = 0, 1 r_cells = 1 z = -4, 0", "r = 0, 10 r_cells = 40 z = -4, 0") + (
+        "&fix group = 'all' field = 'u_z' /\n" + stage("go", 0.3, 5e-4, 0.9) + "&absorbing group = 'left' /\n"
+        "&history name = 'early' kind = 'haversine' period = 0.05 /\n"
+        "&history name = 'late' kind = 'haversine' period = 0.05 start = 0.02 /\n")
+    pair = "".join(f"&absorbing group = 'right' {{}} v_r = {v} history = '{name}' /\n"
+                   for v, name in ((-0.01, "early"), (-0.02, "late")))
+    h, _ = run(bar + pair.format("", ""), "two_waves")
+    c_p = (2e4*0.75/1.25/0.5/2)**0.5
+
+    def pulse(t):
+        return np.where((t > 0) & (t < 0.05), 0.5*(1 - np.cos(2*np.pi*t/0.05)), 0)
+
+    t = h["time"] - 10/c_p
+    off = np.abs(h["top.v_r"] + 0.01*pulse(t) + 0.02*pulse(t - 0.02)).max()
+    check("both waves pass", off < 0.01*0.03, off)
+    for what, first, second in (("another density", "rho = 2", "rho = 2.5"), ("another stage", "", "stages = 'on'")):
+        refused = start("two_refused", bar + stage("on", 0.1, 1e-3) + pair.format(first, second), "--check")
+        check(f"{what}: refused", refused.returncode == 2 and "their dashpots would count twice" in refused.stderr,
+              refused.stderr)
+    kept = start("two_kept", bar + stage("on", 0.1, 1e-3)
+                 + pair.format("stages = 'go'", "rho = 2.5 stages = 'on'"), "--check")
+    check("one after the other they differ", kept.returncode == 0, kept.stderr)
+
+
+def test_a_support_that_keeps_waves_in_draws_a_word():
+    ground = column() + stage("go", 0.1, 2e-3) + "&fix group = 'left' field = 'u_r' /\n&absorbing group = '{}' {} /\n"
+    shake = "v_r = 0.01 history = 'h'"
+    for what, side, keys, held, said in (
+            ("rollers beside", "right", "", "group = 'right' field = 'u_r'", "u_r of every node of this &absorbing"),
+            ("rollers below", "bottom", "", "group = 'bottom' field = 'u_z'", "along z no wave"),
+            ("a wave that cannot come in", "bottom", shake, "group = 'bottom' field = 'u_r'", "along r no wave"),
+            ("a base that is shaken sideways", "bottom", shake, "group = 'bottom' field = 'u_z'", ""),
+            ("a support of another stage", "right", "", "group = 'right' field = 'u_r' stages = 'rest'", ""),
+            ("a bar that is held sideways", "right", "", "group = 'all' field = 'u_r'", "")):
+        text = ground.format(side, keys) + f"&fix {held} /\n&history name = 'h' times = 0, 1 values = 0, 1 /\n" + (
+            "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n&fix group = 'bottom' field = 'u_z' "
+            "stages = 'rest' /\n")
+        told = start("kept_in", text, "--check").stderr
+        check(what, ("of every node of this &absorbing is prescribed" in told) == bool(said) and said in told, told)
+
+
 def test_ground_behind_a_side_given_alike():
     # The ground behind a side is that of the scene, or what rho, c_p and c_s say: given alike they give the same
     # answer, given softer another.
