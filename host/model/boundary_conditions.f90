@@ -6,7 +6,7 @@ module boundary_conditions
    use limited_pressures, only: begin_sides
    use model_types, only: model_t, problem_t, factor_at, fix_t, unknowns_of
    use prescribed_values, only: constraint_t, is_released
-   use scene_parts, only: acts_in, stage_t, PRESCRIBED_P_A
+   use scene_parts, only: PRESCRIBED_P_A
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -170,10 +170,10 @@ contains
    !> Whether a &fix acts in a step.
    pure logical function acts(fix, stage, time)
       type(fix_t), intent(in) :: fix
-      type(stage_t), intent(in) :: stage
+      integer, intent(in) :: stage
       real(wp), intent(in) :: time   !< At the end of the step.
 
-      acts = acts_in(fix%stages, stage%name) .and. time > fix%from + ROUNDING*abs(time) .and. &
+      acts = fix%in_stage(stage) .and. time > fix%from + ROUNDING*abs(time) .and. &
              time <= fix%until + ROUNDING*abs(time)
    end function acts
 
@@ -189,7 +189,7 @@ contains
       air_by = 0
       do i = 1, size(problem%model%fixes)
          associate (fix => problem%model%fixes(i), groups => problem%model%domain%mesh%groups)
-            if (.not. acts(fix, problem%stage, time) .or. fix%limits) cycle
+            if (.not. acts(fix, problem%at%stage, time) .or. fix%limits) cycle
             do k = 1, size(groups(fix%group)%nodes)
                node = groups(fix%group)%nodes(k)
                if (is_released(problem%constraint, i, node)) cycle

@@ -3,7 +3,6 @@
 module boundary_loads
    use kinds, only: wp
    use model_types, only: model_t, factor_at, gravity_at, load_t, plate_t, unknowns_of
-   use scene_parts, only: acts_in, stage_t
    implicit none (type, external)
    private
    public :: load_at, force_of, plate_loads
@@ -12,7 +11,7 @@ contains
    !> sections 7.2 and 7.3.
    function load_at(model, stage, time) result(load)
       type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+      integer, intent(in) :: stage   !< Number of the stage.
       real(wp), intent(in) :: time   !< [s]
       real(wp), allocatable :: load(:)
       integer :: i
@@ -20,7 +19,7 @@ contains
       allocate (load(model%dofs%n), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (acts_in(one%stages, stage%name)) load = load + force_of(one, factor_at(model, one%amplitude, time))
+            if (one%in_stage(stage)) load = load + force_of(one, factor_at(model, one%amplitude, time))
          end associate
       end do
       do i = 1, size(model%plates)

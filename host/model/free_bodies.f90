@@ -9,7 +9,6 @@ module free_bodies
    use generalised_alpha, only: has_inertia
    use load_shapes, only: ties_of
    use model_types, only: model_t
-   use scene_parts, only: acts_in
    use texts, only: joined, short, whole
    use triangle_mesh, only: NAME_LENGTH
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z
@@ -43,7 +42,7 @@ contains
             model%on_contact(s)%words = ''
             if (has_inertia(model%stages(s)%kind)) cycle
             held = always
-            call add_supports(model, model%stages(s)%name, held, touched)
+            call add_supports(model, s, held, touched)
             do b = 1, size(body)
                if (body(b) /= b) cycle
                is_held = [(any(held(f, :) .and. body == b), f=1, TURN)]
@@ -113,7 +112,7 @@ contains
    !> friction.
    pure subroutine add_supports(model, stage, held, touched)
       type(model_t), intent(in) :: model
-      character(*), intent(in) :: stage            !< Its name.
+      integer, intent(in) :: stage                 !< Number of the stage.
       logical, intent(inout) :: held(:, :)         !< (TURN, nodes)
       logical, intent(out) :: touched(:, :)        !< Likewise.
       integer :: i
@@ -122,13 +121,13 @@ contains
       associate (groups => model%domain%mesh%groups)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i))
-               if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, stage)) &
+               if (fix%field <= DISPLACEMENTS .and. fix%in_stage(stage)) &
                   held(merge(TURN, fix%field, fix%of_body), groups(fix%group)%nodes) = .true.
             end associate
          end do
          do i = 1, size(model%contacts)
             associate (one => model%contacts(i))
-               if (.not. acts_in(one%stages, stage)) cycle
+               if (.not. one%in_stage(stage)) cycle
                touched(:, groups(one%slave)%nodes) = .true.
                if (one%plate == 0) then
                   touched(:, groups(one%master)%nodes) = .true.

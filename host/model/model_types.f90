@@ -30,7 +30,7 @@ module model_types
    type, extends(scene_item_t) :: action_t
       character(10) :: what = ''                     !< Its group of the scene, as '&load'.
       integer :: group = 0, amplitude = 0            !< Of the mesh, 0: a face of its own; 0 is 1 throughout.
-      character(LENGTH), allocatable :: stages(:)    !< In which it acts; none: all.
+      logical, allocatable :: in_stage(:)            !< (stages) Whether it acts in it.
       real(wp) :: from = -NEVER                      !< Not before this time [s].
       logical :: supports = .false.                  !< It prescribes values: where there is no ground it does nothing.
       logical :: along_normal = .false.              !< It needs ground on one side of its edges alone.
@@ -38,8 +38,7 @@ module model_types
       logical :: damps = .false.                     !< By dashpots: in dynamic stages alone, and it carries no weight.
    end type action_t
 
-   ! Groups of what follows are those of the mesh, amplitudes are places among the histories, 0: the factor is 1. No
-   ! stages are all.
+   ! Groups of what follows are those of the mesh, amplitudes are places among the histories, 0: the factor is 1.
    type, extends(scene_item_t) :: initial_t
       character(LENGTH) :: group_name = 'all'
       integer :: group = 0

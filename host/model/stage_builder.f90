@@ -11,7 +11,7 @@ module stage_builder
    use key_table, only: key_table_t
    use model_types, only: model_t
    use number_pairs, only: read_pairs
-   use scene_parts, only: amplitude_t, stage_t, acts_in, place_of
+   use scene_parts, only: amplitude_t, stage_t, place_of
    use scene_types, only: item_of
    use texts, only: short, LENGTH
    implicit none (type, external)
@@ -233,7 +233,7 @@ contains
 
       do i = 1, size(model%stages)
          associate (stage => model%stages(i))
-            touching = any([(acts_in(model%contacts(k)%stages, stage%name), k=1, size(model%contacts))])
+            touching = any([(model%contacts(k)%in_stage(i), k=1, size(model%contacts))])
             stage%measure = measure_in(stage%measure, has_inertia(stage%kind), touching)
             if (stage%rho_inf >= 0.0_wp) cycle
             stage%rho_inf = SMOOTH

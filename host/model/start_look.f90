@@ -11,7 +11,7 @@ module start_look
    use start_findings, only: balance_t
    use model_types, only: model_t, factor_at, fix_t, plate_t
    use porous_domain, only: COUPLED, DRAINED
-   use scene_parts, only: acts_in, place_of, LOAD_AIR, PRESCRIBED_P_A
+   use scene_parts, only: place_of, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)
@@ -171,7 +171,7 @@ contains
          associate (fix => model%fixes(i), edges => model%domain%mesh%groups(model%fixes(i)%group)%edges)
             if (fix%field /= AT_P_W .or. fix%hold) cycle
             do s = 1, size(model%stages)
-               if (.not. has_rates(model%stages(s)%kind) .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
+               if (.not. (fix%in_stage(s) .and. has_rates(model%stages(s)%kind))) cycle
                call find_carried(model, s, carried, pressed)
                bare = 0
                most = 0.0_wp
@@ -208,16 +208,16 @@ contains
 
       carried = .false.
       pressed = .false.
-      associate (groups => model%domain%mesh%groups, name => model%stages(number)%name)
+      associate (groups => model%domain%mesh%groups)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i))
-               if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, name)) &
+               if (fix%field <= DISPLACEMENTS .and. fix%in_stage(number)) &
                   carried(fix%field, groups(fix%group)%nodes) = .true.
             end associate
          end do
          do i = 1, size(model%actions)
             associate (one => model%actions(i))
-               if (one%bears .and. one%group > 0 .and. acts_in(one%stages, name)) &
+               if (one%bears .and. one%group > 0 .and. one%in_stage(number)) &
                   pressed(groups(one%group)%nodes) = .true.
             end associate
          end do
@@ -248,13 +248,13 @@ contains
       associate (h => model%amplitudes(fix%amplitude))
          do s = 1, size(model%stages)
             if (s > 1) start = start + model%stages(s - 1)%duration
-            if (.not. has_inertia(model%stages(s)%kind) .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
+            if (.not. (fix%in_stage(s) .and. has_inertia(model%stages(s)%kind))) cycle
             after = 0.0_wp
             i = count(h%times <= max(start, fix%from))
             if (i > 0) after = fix%value*slope_beside(h%times, h%values, h%arcs, i, 1)
             before = 0.0_wp
             if (s > 1 .and. fix%from <= start) then
-               if (has_inertia(model%stages(s - 1)%kind) .and. acts_in(fix%stages, model%stages(s - 1)%name)) cycle
+               if (has_inertia(model%stages(s - 1)%kind) .and. fix%in_stage(s - 1)) cycle
             end if
             if (s == 1 .and. fix%field == AT_U_Z) then
                do i = 1, size(model%initials)
@@ -283,8 +283,7 @@ contains
 
       if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%hold .or. fix%of_body) return
       do s = 1, size(model%stages) - 1
-         if (.not. (model%stages(s)%zero_displacements .and. acts_in(fix%stages, model%stages(s)%name) .and. &
-                    acts_in(fix%stages, model%stages(s + 1)%name))) cycle
+         if (.not. (model%stages(s)%zero_displacements .and. all(fix%in_stage(s:s + 1)))) cycle
          zeroed = sum(model%stages(:s)%duration)
          if (fix%from >= zeroed*(1 - ROUNDED) .or. fix%until <= zeroed*(1 + ROUNDED)) cycle
          if (.not. abs(factor_at(model, fix%amplitude, zeroed))*max(abs(fix%value), abs(fix%value_slope)) > 0.0_wp) &

@@ -2,15 +2,15 @@
 !> Whether the ground of a scene begins in balance: the forces that nothing balances at time 0, as a stress.
 !> docs/theory/host.md section 8.
 module start_balance
-   use acting_places, only: acting_stages
    use kinds, only: wp
    use boundary_loads, only: force_of, plate_loads
+   use generalised_alpha, only: has_inertia
    use start_findings, only: balance_t
    use model_types, only: model_t, factor_at, load_t, unknowns_of
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
    use run_state, only: run_t, enter_stage
-   use scene_parts, only: acts_in, LOAD_PRESSURE
+   use scene_parts, only: LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
@@ -90,7 +90,7 @@ contains
       integer :: k, i
 
       most = 0.0_wp
-      if (load%kind /= LOAD_PRESSURE .or. .not. acts_in(load%stages, run%model%stages(1)%name)) return
+      if (load%kind /= LOAD_PRESSURE .or. .not. load%in_stage(1)) return
       associate (x => run%domain%mesh%x, edges => run%domain%mesh%groups(load%group)%edges)
          do k = 1, size(edges, 2)
             do i = 1, 2
@@ -115,7 +115,7 @@ contains
 
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-            if (fix%field > DISPLACEMENTS .or. .not. acts_in(fix%stages, model%stages(1)%name)) cycle
+            if (fix%field > DISPLACEMENTS .or. .not. fix%in_stage(1)) cycle
             do k = 1, size(nodes)
                at = model%dofs%of(fix%field, nodes(k))
                if (at > 0) forces(at) = 0.0_wp
@@ -124,7 +124,7 @@ contains
       end do
       do i = 1, size(model%actions)
          associate (one => model%actions(i))
-            if (.not. one%damps .or. all(acting_stages(model, one) /= model%stages(1)%name)) cycle
+            if (.not. (one%damps .and. one%in_stage(1) .and. has_inertia(model%stages(1)%kind))) cycle
             associate (nodes => model%domain%mesh%groups(one%group)%nodes)
                do k = 1, size(nodes)
                   do at = 1, DISPLACEMENTS
@@ -150,7 +150,7 @@ contains
       call carry(touched)
       do i = 1, size(run%model%loads)
          associate (one => run%model%loads(i))
-            if (.not. acts_in(one%stages, run%model%stages(1)%name) .or. water_in(run, one) > 0.0_wp) cycle
+            if (.not. one%in_stage(1) .or. water_in(run, one) > 0.0_wp) cycle
             call carry(force_of(one, factor_at(run%model, one%amplitude, 0.0_wp)))
          end associate
       end do

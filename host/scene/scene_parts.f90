@@ -11,7 +11,7 @@ module scene_parts
    implicit none (type, external)
    private
    public :: scene_item_t, amplitude_t, stage_t
-   public :: NAME_LENGTH, FINGERPRINT_LENGTH, NEVER, acts_in, place_of, amplitude_at
+   public :: NAME_LENGTH, FINGERPRINT_LENGTH, NEVER, place_of, amplitude_at
    public :: PRESCRIBED_P_A, PRESCRIBED_WORDS, PRESCRIBED_OF_BODY
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
              LOAD_OF_BODY
@@ -96,11 +96,4 @@ contains
          factor = v(low) + (v(high) - v(low))*share
       end associate
    end function amplitude_at
-
-   !> Whether something limited to stages takes part in one; an empty list means every stage.
-   pure logical function acts_in(stages, name)
-      character(*), intent(in) :: stages(:), name   !< Names of stages. (stages named) or (0).
-
-      acts_in = size(stages) == 0 .or. any(stages == name)
-   end function acts_in
 end module scene_parts

@@ -10,7 +10,7 @@ module run_off
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t, factor_at, gravity_at, load_t
    use prescribed_values, only: is_released
-   use scene_parts, only: acts_in, place_of, LOAD_RAIN
+   use scene_parts, only: place_of, LOAD_RAIN
    use scene_term, only: scene_term_t
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -116,7 +116,7 @@ contains
       rain = 0.0_wp
       do i = 1, size(problem%model%loads)
          associate (one => problem%model%loads(i))
-            if (one%kind == LOAD_RAIN .and. acts_in(one%stages, problem%stage%name)) &
+            if (one%kind == LOAD_RAIN .and. one%in_stage(problem%at%stage)) &
                rain = rain + force_of(one, factor_at(problem%model, one%amplitude, time))
          end associate
       end do
@@ -132,7 +132,7 @@ contains
       integer :: i, k
 
       if (.not. has_rates(problem%stage%kind)) return
-      associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%stage)
+      associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%at%stage)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i), nodes => groups(model%fixes(i)%group)%nodes)
                if (.not. fix%limits .or. .not. acts(fix, stage, time)) cycle
@@ -145,7 +145,7 @@ contains
          end do
          do i = 1, size(model%loads)
             associate (load => model%loads(i), nodes => groups(model%loads(i)%group)%nodes)
-               if (load%kind /= LOAD_RAIN .or. .not. acts_in(load%stages, stage%name)) cycle
+               if (load%kind /= LOAD_RAIN .or. .not. load%in_stage(stage)) cycle
                do k = 1, size(nodes)
                   call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*self%ponding(i), load%group)
                end do

@@ -12,10 +12,11 @@ module staging
    use generalised_alpha, only: scheme_t, make_scheme, STATIC
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t, gravity_at, share_over
+   use name_search, only: read_stages
    use porous_domain, only: model_state_t, copy_state
-   use scene_parts, only: acts_in, place_of
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use texts, only: whole, LENGTH
+   use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -35,17 +36,15 @@ contains
       integer, intent(in) :: number
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
-      character(LENGTH), allocatable :: stages(:)
+      logical, allocatable :: in_stage(:)
       integer :: s
 
-      call k%texts('stages', stages, 'stages in which it is part of the ground; default: all')
-      if (k%lists) return
-      if (size(stages) == 0) return
+      call read_stages(k, model, in_stage, 'stages in which it is part of the ground; default: all')
+      if (k%lists .or. .not. k%given('stages')) return
       if (.not. allocated(model%ground)) &
          allocate (model%ground(size(model%domain%region_of), size(model%stages)), source=.true.)
       do s = 1, size(model%stages)
-         if (.not. acts_in(stages, model%stages(s)%name)) &
-            model%ground(:, s) = model%ground(:, s) .and. model%domain%region_of /= number
+         if (.not. in_stage(s)) model%ground(:, s) = model%ground(:, s) .and. model%domain%region_of /= number
       end do
    end subroutine build_group
 
