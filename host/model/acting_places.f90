@@ -9,10 +9,13 @@ module acting_places
    use model_types, only: model_t, action_t
    use scene_parts, only: place_of
    use texts, only: short, whole
+   use unknown_fields, only: DISPLACEMENTS
    use triangle_mesh, only: group_of_t
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, nodes_of_ground, check_actions
+   public :: facing_edges, acting_stages, nodes_of_ground, held_in, check_actions, TURN
+
+   integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -178,4 +181,20 @@ contains
       end do
       if (any(there)) there(model%domain%bodies) = .true.
    end function nodes_of_ground
+
+   !> Motions of nodes that a &fix holds or moves in a stage. (TURN, nodes)
+   pure function held_in(model, number) result(held)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number   !< Of the stage.
+      logical :: held(TURN, size(model%domain%mesh%x, 2))
+      integer :: i
+
+      held = .false.
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (fix%field <= DISPLACEMENTS .and. fix%in_stage(number)) &
+               held(merge(TURN, fix%field, fix%of_body), model%domain%mesh%groups(fix%group)%nodes) = .true.
+         end associate
+      end do
+   end function held_in
 end module acting_places

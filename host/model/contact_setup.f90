@@ -3,7 +3,7 @@
 module contact_setup
    use acting_places, only: facing_edges
    use kinds, only: wp
-   use boundary_loads, only: plate_loads
+   use boundary_conditions, only: plate_loads
    use model_types, only: model_t, plate_t
    use surface_forces, only: surface_forces_t
    use unknown_fields, only: AT_U_Z

@@ -22,7 +22,8 @@ module model_types
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
-   public :: model_t, problem_t, term_t, term_box_t, factor_at, gravity_at, unknowns_of, share_over
+   public :: model_t, problem_t, term_t, term_box_t
+   public :: factor_at, factors_of, gravity_at, value_at, unknowns_of, share_over
    public :: action_t, acting_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, &
              given_region_t, curve_t, mesh_source_t
 
@@ -221,6 +222,25 @@ contains
       factor = 1.0_wp
       if (amplitude > 0) factor = amplitude_at(model%amplitudes(amplitude), time)
    end function factor_at
+
+   !> Least and largest factor of an amplitude, as of factor_at. [-]
+   pure function factors_of(model, amplitude) result(factors)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: amplitude
+      real(wp) :: factors(2)
+
+      factors = 1.0_wp
+      if (amplitude > 0) factors = [minval(model%amplitudes(amplitude)%values), &
+                                    maxval(model%amplitudes(amplitude)%values)]
+   end function factors_of
+
+   !> Value of a support or load at a height, at a factor of 1.
+   pure real(wp) function value_at(one, z) result(value)
+      class(acting_t), intent(in) :: one
+      real(wp), intent(in) :: z   !< [m]
+
+      value = one%value + one%value_slope*(z - one%datum)
+   end function value_at
 
    !> Gravity at a time, towards -z [m/s2].
    pure real(wp) function gravity_at(model, time)

@@ -2,7 +2,7 @@
 !> Contacts and plates as rows of tables.
 module contact_rows
    use kinds, only: wp
-   use boundary_loads, only: plate_loads
+   use boundary_conditions, only: plate_loads
    use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions
    use model_types, only: model_t, plate_t
    use run_state, only: run_t

@@ -6,7 +6,7 @@ module output_tables
    use contact_rows, only: contact_columns, contact_row, contact_nodes
    use csv, only: csv_t, new_csv, check_csv, write_row, hand_over, close_csv, is_open, NUMBERS
    use faults, only: fault_t
-   use field_files, only: all_pressures
+   use given_pressures, only: set_middles
    use kinds, only: wp
    use model_types, only: model_t, point_t
    use named_points, only: values_at
@@ -14,7 +14,7 @@ module output_tables
    use run_observer, only: observer_t, FITS, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table, write_table
-   use unknown_fields, only: FIELDS, DISPLACEMENTS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
    public :: table_observer_t
@@ -179,7 +179,8 @@ contains
       integer :: i, e, g
 
       associate (state => run%state, mesh => run%domain%mesh, gauss => run%domain%gauss, n => run%domain%rule)
-         call all_pressures(run%domain, state, x)
+         x = state%x
+         call set_middles(run%domain, x(AT_P_W:, :))
          call write_table(folder//'nodes_'//name, 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', &
                           reshape([(mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i), i=1, size(x, 2))], &
                                   [8, size(x, 2)]), fault)

@@ -4,8 +4,7 @@
 !> &fix that prescribes it, so that the columns add up to the whole. docs/theory/host.md section 9.1.
 module reaction_rows
    use kinds, only: wp
-   use boundary_conditions, only: prescribing_fixes, forces_of_supports
-   use boundary_loads, only: force_of
+   use boundary_conditions, only: prescribing_fixes, forces_of_supports, force_of
    use csv, only: quoted
    use model_types, only: model_t, factor_at
    use run_state, only: run_t

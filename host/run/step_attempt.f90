@@ -4,8 +4,8 @@
 module step_attempt
    use kinds, only: wp
    use faults, only: fault_t
-   use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
-   use boundary_loads, only: load_at
+   use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations, &
+                                  load_at
    use generalised_alpha, only: has_rates, has_inertia
    use model_types, only: gravity_at, share_over
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &

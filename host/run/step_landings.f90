@@ -7,7 +7,7 @@
 !> docs/theory/host.md section 4.5.
 module step_landings
    use kinds, only: wp
-   use boundary_loads, only: load_at
+   use boundary_conditions, only: load_at
    use history_shapes, only: kinks_of
    use run_state, only: run_t
    use scene_parts, only: amplitude_t, amplitude_at

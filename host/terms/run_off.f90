@@ -3,12 +3,11 @@
 !> within Newton's method (limited_pressures). docs/theory/host.md section 7.7.
 module run_off
    use kinds, only: wp
-   use boundary_conditions, only: acts, value_of
-   use boundary_loads, only: force_of
+   use boundary_conditions, only: acts, force_of
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: has_rates
    use key_table, only: key_table_t
-   use model_types, only: model_t, problem_t, factor_at, gravity_at, load_t
+   use model_types, only: model_t, problem_t, factor_at, factors_of, gravity_at, value_at, load_t
    use prescribed_values, only: is_released
    use scene_parts, only: place_of, LOAD_RAIN
    use scene_term, only: scene_term_t
@@ -80,9 +79,7 @@ contains
       type(fault_t), intent(inout) :: fault
       real(wp) :: least
 
-      least = load%value
-      if (load%amplitude > 0) least = min(load%value*minval(model%amplitudes(load%amplitude)%values), &
-                                          load%value*maxval(model%amplitudes(load%amplitude)%values))
+      least = minval(load%value*factors_of(model, load%amplitude))
       if (least < 0.0_wp .or. abs(load%value_slope) > 0.0_wp) then
          call raise(fault, EXIT_INPUT, place_of(load)//'rain has a value times its history of 0 or more, and no '// &
                     'value_slope; here it becomes '//short(least)//' m/s. For evaporation give a kind = ''water'' '// &
@@ -139,7 +136,7 @@ contains
                do k = 1, size(nodes)
                   ! The water outside, where it stands, else the air.
                   if (.not. is_released(problem%constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, &
-                     value_of(fix, model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
+                     value_at(fix, model%domain%mesh%x(2, nodes(k)))*factor_at(model, fix%amplitude, time)), fix%group)
                end do
             end associate
          end do
