@@ -142,9 +142,8 @@ contains
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       type(initial_t) :: initial
-      character(*), parameter :: BY_HAND(*) = [character(9) :: 'p_w', 'p_w_slope', 'p_c', 'p_c_slope', 'datum']
       real(wp), allocatable :: sigma(:)
-      integer :: stress, i
+      integer :: stress
 
       call k%text('group', initial%group_name, 'group of elements or nodes')
       call k%number('p_w', initial%p_w, -BIG, BIG, 'pore water pressure at the datum [kPa]', ':p_w')
@@ -178,7 +177,7 @@ contains
       if (k%lists) return
       initial%scene_item_t = item_of(k%group)
       initial%with_table = k%given('water_table')
-      if (initial%with_table .and. any([(k%given(trim(BY_HAND(i))), i=1, size(BY_HAND))])) then
+      if (initial%with_table .and. k%given('p_w|p_w_slope|p_c|p_c_slope|datum')) then
          call raise(fault, EXIT_INPUT, place_of(initial)//'water_table gives p_w and p_c of water at rest; leave '// &
                     'out p_w, p_w_slope, p_c, p_c_slope and datum, or water_table.')
          return

@@ -16,9 +16,9 @@ module model_types
    use plate_motion, only: plate_motion_t
    use porous_domain, only: domain_t
    use retention_curves, only: retention_t
-   use scene_parts, only: scene_item_t, amplitude_t, stage_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH, NEVER
+   use scene_parts, only: origin_t, scene_item_t, amplitude_t, stage_t, amplitude_at, NAME_LENGTH, NEVER
    use solution, only: solution_t
-   use texts, only: LENGTH, PATH_LENGTH
+   use texts, only: LENGTH
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
@@ -135,15 +135,6 @@ module model_types
    type, extends(scene_item_t) :: mesh_source_t
       logical :: from_file = .false., scaled = .false.   !< The key scale is given.
    end type mesh_source_t
-
-   !> Which scene a run is of, for its files and sentences.
-   type :: origin_t
-      character(PATH_LENGTH) :: file = ''
-      character(NAME_LENGTH) :: name = ''
-      character(FINGERPRINT_LENGTH) :: fingerprint = ''
-      integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
-      character(LENGTH), allocatable :: groups(:)    !< Where each stands, as '&load in line 7'.
-   end type origin_t
 
    type :: output_t
       type(point_t), allocatable :: points(:)
