@@ -25,7 +25,7 @@ module model_types
    public :: model_t, problem_t, term_t, term_box_t
    public :: factor_at, factors_of, gravity_at, value_at, unknowns_of, share_over
    public :: action_t, acting_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, &
-             given_region_t, curve_t, mesh_source_t
+             given_region_t, curve_t
 
    !> Something that acts on a group of the mesh, for checks and warnings that ask no more of it.
    type, extends(scene_item_t) :: action_t
@@ -131,11 +131,6 @@ module model_types
       type(fault_t) :: fault
    end type curve_t
 
-   !> Where the mesh comes from.
-   type, extends(scene_item_t) :: mesh_source_t
-      logical :: from_file = .false., scaled = .false.   !< The key scale is given.
-   end type mesh_source_t
-
    type :: output_t
       type(point_t), allocatable :: points(:)
       integer :: checkpoint_steps = 0
@@ -155,7 +150,6 @@ module model_types
       type(origin_t) :: origin
       real(wp) :: step_tolerance = 0.0_wp            !< Of the scene, that of its stages and laws [-]; 0: not given.
       logical :: lanes = .false.                     !< Points go side by side where their law has lanes.
-      type(mesh_source_t) :: mesh_source
       type(material_slot_t), allocatable :: materials(:)
       type(curve_t), allocatable :: curves(:)
       type(given_region_t), allocatable :: regions(:)   !< In the order of those of the domain.
