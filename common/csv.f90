@@ -89,7 +89,7 @@ contains
    end function is_open
 
    !> Checks that the table of an interrupted run exists, is as long as at the checkpoint and can be written; changes
-   !> nothing. Length in bytes. What is wrong is a fault (EXIT_RESTART).
+   !> nothing. Length in bytes; 0: there is none. What is wrong is a fault (EXIT_RESTART); an earlier one stays.
    subroutine check_csv(path, bytes, fault)
       character(*), intent(in) :: path
       integer(int64), intent(in) :: bytes
@@ -97,6 +97,7 @@ contains
       type(c_ptr) :: file
       logical :: good
 
+      if (bytes == 0 .or. fault%code /= 0) return
       file = fopen(path//c_null_char, 'r+b'//c_null_char)
       good = c_associated(file)
       if (good) good = fclose(file) == 0

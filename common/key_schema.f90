@@ -10,7 +10,7 @@ module key_schema
    implicit none (type, external)
    private
    public :: key_t, REQUIRED, NONE, UNBOUNDED, LONGEST_WORD
-   public :: check_group, refuse_idle_keys, idle_reason, place_of, described, words_of
+   public :: check_group, refuse_idle_keys, idle_reason, lacking, place_of, described, words_of
    public :: given, line_of, texts_of, numbers_of, get_text, get_number
 
    character(*), parameter :: NONE = '', REQUIRED = '*'   !< Defaults of a key that may be left out, or must be given.

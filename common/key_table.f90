@@ -5,8 +5,8 @@
 !> only lists it ends there.
 module key_table
    use kinds, only: wp
-   use key_schema, only: key_t, NONE, REQUIRED, LONGEST_WORD, described, get_text, get_number, numbers_of, place_of, &
-                         texts_of, words_of, group_gives => given
+   use key_schema, only: key_t, NONE, REQUIRED, LONGEST_WORD, described, get_text, get_number, lacking, numbers_of, &
+                         place_of, texts_of, words_of
    use namelists, only: group_t
    use texts, only: lower_case, short, whole_text => whole, LENGTH
    implicit none (type, external)
@@ -44,12 +44,12 @@ contains
       allocate (table%keys(0), table%group%entries(0))
    end function listing
 
-   !> Whether the group gives a key.
-   pure logical function given(self, name)
+   !> Whether the group gives a key, or one of several, divided by |.
+   pure logical function given(self, names)
       class(key_table_t), intent(in) :: self
-      character(*), intent(in) :: name
+      character(*), intent(in) :: names
 
-      given = group_gives(self%group, name)
+      given = lacking(self%group, names) == ''
    end function given
 
    !> Range and meaning of a key that was declared, of a table that keeps its keys.

@@ -81,28 +81,31 @@ contains
    end function word_place
 
    !> A number with six significant digits and nothing superfluous. Without a unit; 'not finite' for NaN and infinity.
-   pure function short(value) result(text)
+   pure function short(value, digits) result(text)
       real(wp), intent(in) :: value
+      integer, intent(in), optional :: digits   !< So many significant ones instead.
       character(:), allocatable :: text
-      character(32) :: digits
-      integer :: mark
+      character(40) :: number
+      integer :: mark, n
 
+      n = 6
+      if (present(digits)) n = digits
       if (.not. ieee_is_finite(value)) then
          text = 'not finite'
       else if (abs(value) <= 0.0_wp) then
          text = '0'
       else if (abs(value) >= 1.0e-3_wp .and. abs(value) < 0.9999995e6_wp) then
-         write (digits, '(f0.'//whole(max(0, 5 - floor(log10(abs(value)))))//')') value
-         text = without_zeros(trim(digits))
+         write (number, '(f0.'//whole(max(0, n - 1 - floor(log10(abs(value)))))//')') value
+         text = without_zeros(trim(number))
          if (text(1:1) == '.') text = '0'//text
          if (text(1:1) == '-' .and. text(2:2) == '.') text = '-0'//text(2:)
       else
-         write (digits, '(es13.5e3)') value
-         digits = adjustl(digits)
-         mark = index(digits, 'E')
-         text = without_zeros(digits(:mark - 1))//'e'
-         if (digits(mark + 1:mark + 1) == '-') text = text//'-'
-         text = text//trim(adjustl(digits(mark + 2 + verify(digits(mark + 2:mark + 3)//'1', '0') - 1:)))
+         write (number, '(es'//whole(n + 7)//'.'//whole(n - 1)//'e3)') value
+         number = adjustl(number)
+         mark = index(number, 'E')
+         text = without_zeros(number(:mark - 1))//'e'
+         if (number(mark + 1:mark + 1) == '-') text = text//'-'
+         text = text//trim(adjustl(number(mark + 2 + verify(number(mark + 2:mark + 3)//'1', '0') - 1:)))
       end if
    end function short
 

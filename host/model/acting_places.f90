@@ -7,12 +7,15 @@ module acting_places
    use kinds, only: wp
    use generalised_alpha, only: has_inertia
    use model_types, only: model_t, action_t
-   use scene_parts, only: acts_in, place_of, NAME_LENGTH
+   use scene_parts, only: place_of
    use texts, only: short, whole
+   use unknown_fields, only: DISPLACEMENTS
    use triangle_mesh, only: group_of_t
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, nodes_of_ground, check_actions
+   public :: facing_edges, acting_stages, nodes_of_ground, held_in, check_actions, TURN
+
+   integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -27,18 +30,18 @@ contains
       if (allocated(model%ground)) present = model%ground(:, number)
    end function ground_of
 
-   !> Edges of a group with the ground on their left that is present in the first of some stages; check_sides sees to
+   !> Edges of a group with the ground on their left that is present in the first of some stages; check_actions sees to
    !> the others. (3, edges)
-   pure function facing_edges(model, group, stages) result(edges)
+   pure function facing_edges(model, group, in_stage) result(edges)
       type(model_t), intent(in) :: model
-      integer, intent(in) :: group              !< Of the mesh.
-      character(*), intent(in) :: stages(:)     !< In which something acts on it; none: all.
+      integer, intent(in) :: group           !< Of the mesh.
+      logical, intent(in) :: in_stage(:)     !< (stages) Whether something acts on it.
       integer, allocatable :: edges(:, :)
       integer, allocatable :: sides(:)
       integer :: s, k
 
       edges = model%domain%mesh%groups(group)%edges
-      s = findloc([(acts_in(stages, model%stages(s)%name), s=1, size(model%stages))], .true., dim=1)
+      s = findloc(in_stage, .true., dim=1)
       if (s == 0) return
       sides = sides_with_ground(model, group, s)
       do k = 1, size(edges, 2)
@@ -46,14 +49,13 @@ contains
       end do
    end function facing_edges
 
-   !> Names of the stages in which something acts.
-   pure function acting_stages(model, action) result(names)
+   !> Whether something acts in a stage (stages): dashpots do in dynamic ones alone.
+   pure function acting_stages(model, action) result(acting)
       type(model_t), intent(in) :: model
       type(action_t), intent(in) :: action
-      character(NAME_LENGTH), allocatable :: names(:)
-      integer :: s
+      logical :: acting(size(model%stages))
 
-      allocate (names, source=pack(model%stages%name, [(acts_truly(model, action, s), s=1, size(model%stages))]))
+      acting = action%in_stage .and. (has_inertia(model%stages%kind) .or. .not. action%damps)
    end function acting_stages
 
    !> On which sides of the edges of a group a stage has ground. (edges)
@@ -112,7 +114,7 @@ contains
          type(action_t), intent(in) :: item
          type(group_of_t), intent(in) :: group
          real(wp), intent(in) :: x(:, :)   !< [m]
-         logical :: there(size(carried))
+         logical :: there(size(carried)), acting(size(model%stages))
          character(:), allocatable :: wrong
          integer, dimension(size(group%edges, 2)) :: sides, before
          integer :: s, first, k
@@ -126,13 +128,14 @@ contains
             return
          end if
          first = 0
+         acting = acting_stages(model, item)
          do s = 1, size(model%stages)
-            if (.not. acts_in(item%stages, model%stages(s)%name)) cycle
+            if (.not. item%in_stage(s)) cycle
             wrong = ''
             there = nodes_of_ground(model, s)
             if (allocated(model%ground) .and. .not. item%supports .and. .not. all(there(group%nodes))) then
                wrong = ', part of which is no ground then (stages of &region); name the stages in which it acts.'
-            else if (item%along_normal .and. acts_truly(model, item, s)) then
+            else if (item%along_normal .and. acting(s)) then
                sides = sides_with_ground(model, item%group, s)
                if (first == 0) before = sides
                k = findloc((sides /= ON_LEFT .and. sides /= ON_RIGHT) .or. sides /= before, .true., dim=1)
@@ -164,16 +167,6 @@ contains
       end function misplaced
    end subroutine check_actions
 
-   !> Whether something acts in a stage: dashpots do in dynamic ones alone.
-   pure logical function acts_truly(model, action, number)
-      type(model_t), intent(in) :: model
-      type(action_t), intent(in) :: action
-      integer, intent(in) :: number   !< Of the stage.
-
-      acts_truly = (has_inertia(model%stages(number)%kind) .or. .not. action%damps) .and. &
-                   acts_in(action%stages, model%stages(number)%name)
-   end function acts_truly
-
    !> Nodes of elements that a stage has, and of plates.
    pure function nodes_of_ground(model, number) result(there)
       type(model_t), intent(in) :: model
@@ -188,4 +181,20 @@ contains
       end do
       if (any(there)) there(model%domain%bodies) = .true.
    end function nodes_of_ground
+
+   !> Motions of nodes that a &fix holds or moves in a stage. (TURN, nodes)
+   pure function held_in(model, number) result(held)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number   !< Of the stage.
+      logical :: held(TURN, size(model%domain%mesh%x, 2))
+      integer :: i
+
+      held = .false.
+      do i = 1, size(model%fixes)
+         associate (fix => model%fixes(i))
+            if (fix%field <= DISPLACEMENTS .and. fix%in_stage(number)) &
+               held(merge(TURN, fix%field, fix%of_body), model%domain%mesh%groups(fix%group)%nodes) = .true.
+         end associate
+      end do
+   end function held_in
 end module acting_places

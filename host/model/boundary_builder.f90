@@ -9,8 +9,8 @@ module boundary_builder
    use key_table, only: key_table_t
    use model_types, only: model_t, acting_t, gravity_at, initial_t, fix_t, load_t, plate_t, coordinate_t, &
                           contact_pair_t, tie_t
-   use name_search, only: mesh_group, history_named
-   use scene_parts, only: acts_in, place_of, LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, &
+   use name_search, only: mesh_group, history_named, read_stages
+   use scene_parts, only: place_of, LOAD_PRESSURE, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, &
                           LOAD_FORCE_Z, LOAD_OF_BODY, PRESCRIBED_WORDS, PRESCRIBED_OF_BODY
    use scene_types, only: item_of
    use texts, only: short, whole, LENGTH
@@ -21,7 +21,6 @@ module boundary_builder
    public :: build_plate, build_initial, build_fix, build_load, build_contact, build_tie, add_body
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
-   character(*), parameter :: STAGES = 'names of stages; default: all'
 contains
    !> &plate, before what acts on it: one with a face of its own becomes a node of the mesh, and each becomes a group of
    !> it. docs/theory/host.md section 7.3. Fault EXIT_INPUT: keys that contradict each other. EXIT_GROUP: the name is
@@ -35,7 +34,7 @@ contains
       real(wp), allocatable :: r(:), outline(:)
       real(wp) :: z
       logical :: up, good
-      integer :: none(3, 0)
+      integer :: none(3, 0), s
 
       joined_name = ''
       history = ''
@@ -57,7 +56,7 @@ contains
       plate%scene_item_t = item_of(k%group)
       plate%what = '&plate'
       plate%bears = .true.
-      allocate (plate%stages(0))
+      plate%in_stage = [(.true., s=1, size(model%stages))]
       if (count([k%given('group'), k%given('r'), k%given('outline')]) /= 1) then
          call raise(fault, EXIT_INPUT, place_of(plate)//'a plate has a face of its own, r = begin, end (in the '// &
                     'plane also outline), or it is joined to a boundary, group = name: give one of the two.')
@@ -143,9 +142,8 @@ contains
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       type(initial_t) :: initial
-      character(*), parameter :: BY_HAND(*) = [character(9) :: 'p_w', 'p_w_slope', 'p_c', 'p_c_slope', 'datum']
       real(wp), allocatable :: sigma(:)
-      integer :: stress, i
+      integer :: stress
 
       call k%text('group', initial%group_name, 'group of elements or nodes')
       call k%number('p_w', initial%p_w, -BIG, BIG, 'pore water pressure at the datum [kPa]', ':p_w')
@@ -179,7 +177,7 @@ contains
       if (k%lists) return
       initial%scene_item_t = item_of(k%group)
       initial%with_table = k%given('water_table')
-      if (initial%with_table .and. any([(k%given(trim(BY_HAND(i))), i=1, size(BY_HAND))])) then
+      if (initial%with_table .and. k%given('p_w|p_w_slope|p_c|p_c_slope|datum')) then
          call raise(fault, EXIT_INPUT, place_of(initial)//'water_table gives p_w and p_c of water at rest; leave '// &
                     'out p_w, p_w_slope, p_c, p_c_slope and datum, or water_table.')
          return
@@ -224,7 +222,7 @@ contains
       call k%flag('hold', fix%hold, 'no|yes', 'yes', 'yes: held at its value at the start of the stage')
       call k%flag('motion', fix%acceleration, 'value|acceleration', 'acceleration', &
                   'what the value of u_r, u_z is: displacement, or acceleration [m/s2]')
-      call k%texts('stages', fix%stages, STAGES)
+      call read_stages(k, model, fix%in_stage)
       call k%number('from', fix%from, -BIG, BIG, 'acts after this time [s]')
       call k%number('until', fix%until, -BIG, BIG, 'acts up to this time [s]')
       if (k%lists) return
@@ -265,7 +263,7 @@ contains
       call k%number('value_slope', load%value_slope, -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]')
       call k%number('datum', load%datum, -BIG, BIG, 'z of the datum [m]', '+value_slope')
       call k%text('history', history, 'factor on the value', refers='history')
-      call k%texts('stages', load%stages, STAGES)
+      call read_stages(k, model, load%in_stage)
       if (k%lists) return
       call find_places(load, k, history, model, fault)
       if (fault%code /= 0) return
@@ -315,7 +313,7 @@ contains
       call k%word('gap', contact%options%gap, 'nodal|pointwise|combined', 'gap that is penalised, see CONTACT.md')
       call k%number('search_radius', contact%options%search_radius, ZERO, BIG, &
                     'edges farther apart are not paired [m]; 0: length of the slave edge')
-      call k%texts('stages', contact%stages, STAGES)
+      call read_stages(k, model, contact%in_stage)
       if (k%lists) return
       contact%scene_item_t = item_of(k%group)
       contact%options%axisymmetric = model%domain%axisymmetric
@@ -340,13 +338,12 @@ contains
             return
          end if
       end associate
-      do i = 1, size(model%stages)
-         if (model%stages(i)%zero_displacements .and. acts_in(contact%stages, model%stages(i)%name)) then
-            call raise(fault, EXIT_INPUT, place_of(contact)//'stage '''//trim(model%stages(i)%name)// &
-                       ''' zeroes its displacements, which would undo the contact; name the stages of the contact.')
-            return
-         end if
-      end do
+      i = findloc(contact%in_stage .and. model%stages%zero_displacements, .true., dim=1)
+      if (i > 0) then
+         call raise(fault, EXIT_INPUT, place_of(contact)//'stage '''//trim(model%stages(i)%name)// &
+                    ''' zeroes its displacements, which would undo the contact; name the stages of the contact.')
+         return
+      end if
       contact%what = '&contact'
       contact%along_normal = .true.
       contact%group = contact%slave

@@ -1,17 +1,19 @@
 ! SPDX-License-Identifier: MIT
-!> What a step prescribes: displacements, pore pressures and air pressures at its end, and the masses of plates.
+!> What acts in a step: prescribed displacements, pore pressures and air pressures at its end, loads at a moment, and
+!> the masses of plates.
 module boundary_conditions
    use kinds, only: wp
    use generalised_alpha, only: scheme_t, make_scheme, has_rates
    use limited_pressures, only: begin_sides
-   use model_types, only: model_t, problem_t, factor_at, fix_t, unknowns_of
+   use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of
    use prescribed_values, only: constraint_t, is_released
-   use scene_parts, only: acts_in, PRESCRIBED_P_A
+   use scene_parts, only: PRESCRIBED_P_A
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: new_constraint, constrain_step, complete_constraint, acts, value_of, follow_accelerations, &
+   public :: new_constraint, constrain_step, complete_constraint, acts, follow_accelerations, &
              starting_accelerations, prescribing_fixes, forces_of_supports
+   public :: load_at, force_of, plate_loads
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
    real(wp), parameter :: SPACINGS = 8.0_wp       !< Of numbers, by which a sum of stages may miss it.
@@ -58,14 +60,14 @@ contains
          do i = 1, size(by)
             if (by(i) == 0) cycle
             associate (fix => model%fixes(by(i)))
-               constraint%target(i) = value_of(fix, z(dofs%node(i)), factors(by(i)))
+               constraint%target(i) = value_at(fix, z(dofs%node(i)))*factors(by(i))
                if (fix%hold) constraint%target(i) = x_start(fix%field, dofs%node(i))
             end associate
          end do
          do i = 1, size(air_by)
             if (air_by(i) == 0) cycle
             associate (fix => model%fixes(air_by(i)))
-               constraint%air_target(i) = value_of(fix, z(i), factors(air_by(i)))
+               constraint%air_target(i) = value_at(fix, z(i))*factors(air_by(i))
                if (fix%hold) constraint%air_target(i) = x_start(AT_P_W, i) + x_start(AT_P_C, i)
             end associate
          end do
@@ -104,14 +106,6 @@ contains
          constraint%air = .false.
       end associate
    end subroutine complete_constraint
-
-   !> Value of a &fix at a height z, its history the factor.
-   pure real(wp) function value_of(fix, z, factor) result(value)
-      type(fix_t), intent(in) :: fix
-      real(wp), intent(in) :: z, factor   !< [m, -]
-
-      value = (fix%value + fix%value_slope*(z - fix%datum))*factor
-   end function value_of
 
    !> Displacements at the end of a step whose accelerations are prescribed: those that the scheme gives them, so that
    !> inertia is exact and free of the ringing that a prescribed displacement has. Accelerations of the scheme belong to
@@ -164,8 +158,8 @@ contains
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: time
 
-      a = value_of(fix, model%domain%mesh%x(2, node), &
-                   factor_at(model, fix%amplitude, time + (0.5_wp - scheme%gamma)*scheme%dt))
+      a = value_at(fix, model%domain%mesh%x(2, node)) &
+          *factor_at(model, fix%amplitude, time + (0.5_wp - scheme%gamma)*scheme%dt)
    end function acceleration_at
 
    !> Whether a &fix acts in a step. Times that are sums, 0.1 s and 0.2 s, are those of the scene, 0.3 s.
@@ -176,7 +170,7 @@ contains
       real(wp) :: rounding_of_time
 
       rounding_of_time = max(SPACINGS*spacing(time), ROUNDING*problem%at%nominal*problem%at%factor)
-      acts = acts_in(fix%stages, problem%stage%name) .and. time > fix%from + rounding_of_time .and. &
+      acts = fix%in_stage(problem%at%stage) .and. time > fix%from + rounding_of_time .and. &
              time <= fix%until + rounding_of_time
    end function acts
 
@@ -222,4 +216,50 @@ contains
          end associate
       end do
    end function forces_of_supports
+
+   !> Loads of a stage at a time. (unknowns) Forces of loads and plates [kN], inflows [m3/s]: docs/theory/host.md
+   !> sections 7.2 and 7.3.
+   function load_at(model, stage, time) result(load)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: stage   !< Number of the stage.
+      real(wp), intent(in) :: time   !< [s]
+      real(wp), allocatable :: load(:)
+      integer :: i
+
+      allocate (load(model%dofs%n), source=0.0_wp)
+      do i = 1, size(model%loads)
+         associate (one => model%loads(i))
+            if (one%in_stage(stage)) load = load + force_of(one, factor_at(model, one%amplitude, time))
+         end associate
+      end do
+      do i = 1, size(model%plates)
+         associate (one => model%plates(i))
+            associate (at => unknowns_of(one, model%dofs))
+               load(at) = load(at) + plate_loads(model, one, time)/one%coordinates%unit
+            end associate
+         end associate
+      end do
+   end function load_at
+
+   !> Forces [kN] or inflows [m3/s] of a load at a factor of its history. (unknowns)
+   pure function force_of(load, factor) result(force)
+      type(load_t), intent(in) :: load
+      real(wp), intent(in) :: factor   !< [-]
+      real(wp), allocatable :: force(:)
+
+      force = factor*load%value*load%shape
+      if (allocated(load%rise)) force = force + factor*load%value_slope*load%rise
+   end function force_of
+
+   !> Loads on the coordinates of a plate, its weight among them: first the force upwards [kN]. docs/theory/host.md
+   !> section 7.3.
+   pure function plate_loads(model, plate, time) result(loads)
+      type(model_t), intent(in) :: model
+      type(plate_t), intent(in) :: plate
+      real(wp), intent(in) :: time   !< [s]
+      real(wp) :: loads(size(plate%coordinates))
+
+      loads = factor_at(model, plate%amplitude, time)*plate%coordinates%load
+      if (plate%heavy) loads(1) = loads(1) - plate%mass*gravity_at(model, time)
+   end function plate_loads
 end module boundary_conditions

@@ -6,8 +6,7 @@ module boundary_warnings
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
    use model_types, only: model_t, acting_t, fix_t
-   use scene_parts, only: acts_in, amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t, PRESCRIBED_P_A, &
-                          PRESCRIBED_WORDS
+   use scene_parts, only: amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, PRESCRIBED_P_A, PRESCRIBED_WORDS
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -38,34 +37,28 @@ contains
       allocate (by(PRESCRIBED_P_A, size(model%domain%mesh%x, 2)))
       do i = 2, size(model%fixes)
          associate (one => model%fixes(i))
-            before: do j = 1, i - 1
-               if (model%fixes(j)%field /= one%field) cycle
-               ! Where one side is given and another limited, as at a water level, the given one counts.
-               if (model%fixes(j)%limits .neqv. one%limits) cycle
-               if (model%fixes(j)%from >= one%until .or. one%from >= model%fixes(j)%until) cycle
-               do s = 1, size(model%stages)
-                  if (.not. (acts_in(one%stages, model%stages(s)%name) .and. &
-                             acts_in(model%fixes(j)%stages, model%stages(s)%name))) cycle
-                  associate (nodes => model%domain%mesh%groups(model%fixes(j)%group)%nodes)
-                     n = findloc([(differ(model%fixes(j), one, model%domain%mesh%x(2, nodes(node))) .and. &
-                                   any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
-                                   node=1, size(nodes))], .true., dim=1)
-                     if (n == 0) cycle before
-                     call print_warning(place_of(one)//PRESCRIBED_WORDS(one%field)//' of the node at ('// &
-                        short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
-                        ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
-                        trim(model%fixes(j)%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
-                        'values; the later one counts.')
-                  end associate
-                  cycle before
-               end do
-            end do before
+            do j = 1, i - 1
+               associate (before => model%fixes(j), nodes => model%domain%mesh%groups(model%fixes(j)%group)%nodes)
+                  s = findloc(one%in_stage .and. before%in_stage, .true., dim=1)
+                  ! Where one side is given and another limited, as at a water level, the given one counts.
+                  if (s == 0 .or. before%field /= one%field .or. (before%limits .neqv. one%limits)) cycle
+                  if (before%from >= one%until .or. one%from >= before%until) cycle
+                  n = findloc([(differ(before, one, model%domain%mesh%x(2, nodes(node))) .and. &
+                                any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
+                                node=1, size(nodes))], .true., dim=1)
+                  if (n > 0) call print_warning(place_of(one)//PRESCRIBED_WORDS(one%field)//' of the node at ('// &
+                     short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
+                     ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
+                     trim(before%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
+                     'values; the later one counts.')
+               end associate
+            end do
          end associate
       end do
       do s = 1, size(model%stages)
          by = 0
          do i = 1, size(model%fixes)
-            if (model%fixes(i)%field > DISPLACEMENTS .and. acts_in(model%fixes(i)%stages, model%stages(s)%name)) &
+            if (model%fixes(i)%field > DISPLACEMENTS .and. model%fixes(i)%in_stage(s)) &
                by(model%fixes(i)%field, model%domain%mesh%groups(model%fixes(i)%group)%nodes) = i
          end do
          node = findloc(all(by(AT_P_W:, :) > 0, dim=1), .true., dim=1)
@@ -122,10 +115,9 @@ contains
             if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
             own = merge(PRESCRIBED_P_A, AT_P_W, one%kind == LOAD_AIR)
             do s = 1, size(model%stages)
-               if (.not. acts_in(one%stages, model%stages(s)%name)) cycle
-               taken = has_given(model, model%stages(s), own) .or. &
-                       (has_given(model, model%stages(s), AT_P_C) .and. &
-                        has_given(model, model%stages(s), AT_P_W + PRESCRIBED_P_A - own))
+               if (.not. one%in_stage(s)) cycle
+               taken = has_given(model, s, own) .or. (has_given(model, s, AT_P_C) .and. &
+                                                      has_given(model, s, AT_P_W + PRESCRIBED_P_A - own))
                lost = count([(all(taken(edges(:2, e))), e=1, size(edges, 2))])
                if (lost == 0) cycle
                call print_warning(place_of(one)//'the inflow has no effect on '//whole(lost)//' of the '// &
@@ -141,15 +133,14 @@ contains
    !> Nodes with a prescribed value throughout a stage. (nodes)
    pure function has_given(model, stage, field) result(has)
       type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
-      integer, intent(in) :: field   !< As of fix_t.
+      integer, intent(in) :: stage, field   !< Number of the stage; as of fix_t.
       logical :: has(size(model%domain%mesh%x, 2))
       integer :: i
 
       has = .false.
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i))
-            if (one%field /= field .or. one%limits .or. .not. acts_in(one%stages, stage%name)) cycle
+            if (one%field /= field .or. one%limits .or. .not. one%in_stage(stage)) cycle
             if (one%from > -huge(1.0_wp) .or. one%until < huge(1.0_wp)) cycle
             has(model%domain%mesh%groups(one%group)%nodes) = .true.
          end associate
@@ -163,7 +154,6 @@ contains
       character(*), parameter :: OF_RUN = ' times of a &history are those of the run, not of a stage: its key '// &
                                           'stages counts them from stages.'
       real(wp) :: starts(size(model%stages)), start, factor
-      logical :: acting(size(starts))
       integer :: i, s, n, dynamic
 
       starts = [(sum(model%stages(:s - 1)%duration), s=1, size(starts))]
@@ -172,8 +162,7 @@ contains
          if (model%actions(i)%amplitude == 0) cycle
          associate (one => model%actions(i), h => model%amplitudes(model%actions(i)%amplitude))
             if (size(h%stages) > 0) cycle
-            acting = [(acts_in(one%stages, model%stages(s)%name), s=1, size(acting))]
-            start = max(one%from, starts(findloc(acting, .true., dim=1)))
+            start = max(one%from, starts(findloc(one%in_stage, .true., dim=1)))
             factor = amplitude_at(h, start)
             n = size(h%times)
             if (any(h%times < start .and. &
@@ -183,7 +172,7 @@ contains
                trim(merge(', which then stays; ', ';                   ', h%times(n) <= start))//OF_RUN)
             if (dynamic < 2) cycle
             ! What acts from that stage on alone is told by its first factor.
-            if (.not. (acting(dynamic) .and. any(acting(:dynamic - 1)))) cycle
+            if (.not. (one%in_stage(dynamic) .and. any(one%in_stage(:dynamic - 1)))) cycle
             start = starts(dynamic)
             if (h%times(n) <= start .and. h%times(n) - h%times(1) <= BRIEF*start .and. &
                 .not. abs(h%values(n) - h%values(1)) > 0.0_wp .and. any(abs(h%values - h%values(1)) > 0.0_wp)) &
@@ -226,11 +215,8 @@ contains
       subroutine look_at_stages(one, what)
          class(acting_t), intent(in) :: one
          character(*), intent(in) :: what
-         integer :: s
 
-         do s = 1, size(model%stages)
-            if (acts_in(one%stages, model%stages(s)%name) .and. has_rates(model%stages(s)%kind)) return
-         end do
+         if (any(one%in_stage .and. has_rates(model%stages%kind))) return
          call print_warning(place_of(one)//trim(what)//' has no effect: the stages in which it acts are static, '// &
                             'where pressures stay.')
       end subroutine look_at_stages

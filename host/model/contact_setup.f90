@@ -3,7 +3,7 @@
 module contact_setup
    use acting_places, only: facing_edges
    use kinds, only: wp
-   use boundary_loads, only: plate_loads
+   use boundary_conditions, only: plate_loads
    use model_types, only: model_t, plate_t
    use surface_forces, only: surface_forces_t
    use unknown_fields, only: AT_U_Z
@@ -41,10 +41,10 @@ contains
                   master = plate_surface(model%plates(one%plate)%corners)
                   link = link_of(model%plates(one%plate))
                else
-                  master = surface_of(facing_edges(model, one%master, one%stages), mesh%x)
+                  master = surface_of(facing_edges(model, one%master, one%in_stage), mesh%x)
                end if
-               call new_interface(model%dofs, surface_of(facing_edges(model, one%slave, one%stages), mesh%x), master, &
-                                  link, one%options, built%interfaces(i), status)
+               call new_interface(model%dofs, surface_of(facing_edges(model, one%slave, one%in_stage), mesh%x), &
+                                  master, link, one%options, built%interfaces(i), status)
                if (status%code == CONTACT_OK) cycle
                call contact_message(status, text)
                call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//trim(text)//'.')

@@ -2,6 +2,7 @@
 !> Bodies that no support holds in a stage without inertia: what is connected by elements, ties and plates, and the
 !> rigid motions that its supports leave. docs/theory/host.md section 7.1.
 module free_bodies
+   use acting_places, only: held_in, TURN
    use kinds, only: wp
    use contact_types, only: has_friction
    use exit_codes, only: EXIT_FREE_BODY
@@ -9,7 +10,6 @@ module free_bodies
    use generalised_alpha, only: has_inertia
    use load_shapes, only: ties_of
    use model_types, only: model_t
-   use scene_parts, only: acts_in
    use texts, only: joined, short, whole
    use triangle_mesh, only: NAME_LENGTH
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z
@@ -17,7 +17,6 @@ module free_bodies
    private
    public :: check_bodies
 
-   integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
    character(*), parameter :: MOTIONS(TURN) = [character(48) :: 'moving along r (x); add a &fix of u_r', &
       'moving along z (y); add a &fix of u_z', 'turning; add a &fix of u_z or u_r']
    character(*), parameter :: ALONG_PLATE = '; along a plate give one friction'
@@ -42,8 +41,8 @@ contains
          do s = 1, size(model%stages)
             model%on_contact(s)%words = ''
             if (has_inertia(model%stages(s)%kind)) cycle
-            held = always
-            call add_supports(model, model%stages(s)%name, held, touched)
+            held = always .or. held_in(model, s)
+            touched = touched_in(model, s)
             do b = 1, size(body)
                if (body(b) /= b) cycle
                is_held = [(any(held(f, :) .and. body == b), f=1, TURN)]
@@ -109,26 +108,18 @@ contains
       end associate
    end subroutine find_bodies
 
-   !> Adds what the supports of a stage hold, and says what its contacts touch: a plate may slide along one that has no
-   !> friction.
-   pure subroutine add_supports(model, stage, held, touched)
+   !> Motions of nodes that the contacts of a stage may hold: a plate slides along one that has no friction.
+   pure function touched_in(model, stage) result(touched)
       type(model_t), intent(in) :: model
-      character(*), intent(in) :: stage            !< Its name.
-      logical, intent(inout) :: held(:, :)         !< (TURN, nodes)
-      logical, intent(out) :: touched(:, :)        !< Likewise.
+      integer, intent(in) :: stage   !< Number of the stage.
+      logical :: touched(TURN, size(model%domain%mesh%x, 2))
       integer :: i
 
       touched = .false.
       associate (groups => model%domain%mesh%groups)
-         do i = 1, size(model%fixes)
-            associate (fix => model%fixes(i))
-               if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, stage)) &
-                  held(merge(TURN, fix%field, fix%of_body), groups(fix%group)%nodes) = .true.
-            end associate
-         end do
          do i = 1, size(model%contacts)
             associate (one => model%contacts(i))
-               if (.not. acts_in(one%stages, stage)) cycle
+               if (.not. one%in_stage(stage)) cycle
                touched(:, groups(one%slave)%nodes) = .true.
                if (one%plate == 0) then
                   touched(:, groups(one%master)%nodes) = .true.
@@ -139,7 +130,7 @@ contains
             end associate
          end do
       end associate
-   end subroutine add_supports
+   end function touched_in
 
    !> A plate by its name, another body by groups that belong to it, and by where it is.
    function described(model, mine) result(text)

@@ -14,7 +14,7 @@ module given_pressures
    implicit none (type, external)
    private
    public :: add_centers, pressures_at_start, check_places, nodes_with_flow, edges_with_flow
-   public :: water, suction
+   public :: water, suction, set_middles
 contains
    !> A node in the middle of every undrained element: there its pressures are. docs/theory/host.md section 3.5. The
    !> regions must be known; coordinates: mean of the vertices.
@@ -77,6 +77,20 @@ contains
       suction = initial%p_c + initial%p_c_slope*(z - initial%datum)
       if (initial%with_table) suction = -water(initial, z)
    end function suction
+
+   !> Where pressures are linear the middle of a side has the mean of its ends. docs/theory/host.md section 3.1.
+   pure subroutine set_middles(domain, p)
+      type(domain_t), intent(in) :: domain
+      real(wp), intent(inout) :: p(:, :)   !< (2, nodes) [kPa]
+      integer :: e
+
+      if (domain%n_p == 6) return
+      do e = 1, size(domain%region_of)
+         associate (nodes => domain%mesh%t6(:, e))
+            p(:, nodes(4:6)) = 0.5_wp*(p(:, nodes(1:3)) + p(:, nodes([2, 3, 1])))
+         end associate
+      end do
+   end subroutine set_middles
 
    !> Nodes of elements whose fluids flow, middles of sides included.
    pure function nodes_with_flow(domain) result(flows)

@@ -63,7 +63,7 @@ contains
          if (load%kind < LOAD_FORCE_R) then
             acts = .true.
             if (any(load%kind == [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) acts = edges_with_flow(model%domain, load%group)
-            edges = facing_edges(model, load%group, load%stages)
+            edges = facing_edges(model, load%group, load%in_stage)
             do e = 1, size(edges, 2)
                if (.not. acts(e)) cycle
                call add_edge(model, edges(:, e), load%kind, base, slope, shape)

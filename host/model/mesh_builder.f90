@@ -4,14 +4,13 @@
 module mesh_builder
    use kinds, only: wp
    use exit_codes, only: EXIT_MESH
-   use faults, only: fault_t, raise, EXIT_INPUT
+   use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use files, only: beside
    use gmsh_reader, only: read_gmsh
    use graded_rectangle, only: graded_mesh
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
-   use model_types, only: model_t, mesh_source_t
-   use scene_parts, only: place_of
+   use model_types, only: model_t
    use split_triangles, only: split_mesh
    use texts, only: short, LENGTH
    use triangle_mesh, only: mesh_t
@@ -36,6 +35,7 @@ contains
       type(fault_t), intent(inout) :: fault
       type(blocks_t) :: r, z
       character(LENGTH) :: file
+      character(:), allocatable :: place
       real(wp) :: scale, fineness
 
       file = ''
@@ -48,12 +48,11 @@ contains
       call take_blocks('z', z)
       call k%number('fineness', fineness, 0.01_wp, 64.0_wp, 'times as many cells along each axis; of a file 1, 2, 4, 8')
       if (k%lists) return
-      model%mesh_source = mesh_source_t(k%group%file, k%group%line, file /= '', k%given('scale'))
+      place = at_line(k%group%file, k%group%line)
       if (file == '') then
-         call make_blocks(place_of(model%mesh_source), fineness, r, z, model%domain%mesh, fault)
+         call make_blocks(place, fineness, r, z, model%domain%mesh, fault)
       else
-         call read_file(place_of(model%mesh_source), beside(trim(k%group%file), trim(file)), scale, &
-                        fineness, model%domain%mesh, fault)
+         call read_file(place, beside(trim(k%group%file), trim(file)), scale, fineness, model%domain%mesh, fault)
       end if
    contains
       subroutine take_blocks(axis, blocks)

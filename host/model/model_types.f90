@@ -16,21 +16,22 @@ module model_types
    use plate_motion, only: plate_motion_t
    use porous_domain, only: domain_t
    use retention_curves, only: retention_t
-   use scene_parts, only: scene_item_t, amplitude_t, stage_t, amplitude_at, NAME_LENGTH, FINGERPRINT_LENGTH, NEVER
+   use scene_parts, only: origin_t, scene_item_t, amplitude_t, stage_t, amplitude_at, NAME_LENGTH, NEVER
    use solution, only: solution_t
-   use texts, only: LENGTH, PATH_LENGTH
+   use texts, only: LENGTH
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
-   public :: model_t, problem_t, term_t, term_box_t, factor_at, gravity_at, unknowns_of, share_over
+   public :: model_t, problem_t, term_t, term_box_t
+   public :: factor_at, factors_of, gravity_at, value_at, unknowns_of, share_over
    public :: action_t, acting_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, &
-             given_region_t, curve_t, mesh_source_t
+             given_region_t, curve_t
 
    !> Something that acts on a group of the mesh, for checks and warnings that ask no more of it.
    type, extends(scene_item_t) :: action_t
       character(10) :: what = ''                     !< Its group of the scene, as '&load'.
       integer :: group = 0, amplitude = 0            !< Of the mesh, 0: a face of its own; 0 is 1 throughout.
-      character(LENGTH), allocatable :: stages(:)    !< In which it acts; none: all.
+      logical, allocatable :: in_stage(:)            !< (stages) Whether it acts in it.
       real(wp) :: from = -NEVER                      !< Not before this time [s].
       logical :: supports = .false.                  !< It prescribes values: where there is no ground it does nothing.
       logical :: along_normal = .false.              !< It needs ground on one side of its edges alone.
@@ -38,8 +39,7 @@ module model_types
       logical :: damps = .false.                     !< By dashpots: in dynamic stages alone, and it carries no weight.
    end type action_t
 
-   ! Groups of what follows are those of the mesh, amplitudes are places among the histories, 0: the factor is 1. No
-   ! stages are all.
+   ! Groups of what follows are those of the mesh, amplitudes are places among the histories, 0: the factor is 1.
    type, extends(scene_item_t) :: initial_t
       character(LENGTH) :: group_name = 'all'
       integer :: group = 0
@@ -131,20 +131,6 @@ module model_types
       type(fault_t) :: fault
    end type curve_t
 
-   !> Where the mesh comes from.
-   type, extends(scene_item_t) :: mesh_source_t
-      logical :: from_file = .false., scaled = .false.   !< The key scale is given.
-   end type mesh_source_t
-
-   !> Which scene a run is of, for its files and sentences.
-   type :: origin_t
-      character(PATH_LENGTH) :: file = ''
-      character(NAME_LENGTH) :: name = ''
-      character(FINGERPRINT_LENGTH) :: fingerprint = ''
-      integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
-      character(LENGTH), allocatable :: groups(:)    !< Where each stands, as '&load in line 7'.
-   end type origin_t
-
    type :: output_t
       type(point_t), allocatable :: points(:)
       integer :: checkpoint_steps = 0
@@ -164,7 +150,6 @@ module model_types
       type(origin_t) :: origin
       real(wp) :: step_tolerance = 0.0_wp            !< Of the scene, that of its stages and laws [-]; 0: not given.
       logical :: lanes = .false.                     !< Points go side by side where their law has lanes.
-      type(mesh_source_t) :: mesh_source
       type(material_slot_t), allocatable :: materials(:)
       type(curve_t), allocatable :: curves(:)
       type(given_region_t), allocatable :: regions(:)   !< In the order of those of the domain.
@@ -222,6 +207,25 @@ contains
       factor = 1.0_wp
       if (amplitude > 0) factor = amplitude_at(model%amplitudes(amplitude), time)
    end function factor_at
+
+   !> Least and largest factor of an amplitude, as of factor_at. [-]
+   pure function factors_of(model, amplitude) result(factors)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: amplitude
+      real(wp) :: factors(2)
+
+      factors = 1.0_wp
+      if (amplitude > 0) factors = [minval(model%amplitudes(amplitude)%values), &
+                                    maxval(model%amplitudes(amplitude)%values)]
+   end function factors_of
+
+   !> Value of a support or load at a height, at a factor of 1.
+   pure real(wp) function value_at(one, z) result(value)
+      class(acting_t), intent(in) :: one
+      real(wp), intent(in) :: z   !< [m]
+
+      value = one%value + one%value_slope*(z - one%datum)
+   end function value_at
 
    !> Gravity at a time, towards -z [m/s2].
    pure real(wp) function gravity_at(model, time)

@@ -3,11 +3,13 @@
 module name_search
    use faults, only: fault_t, raise
    use exit_codes, only: EXIT_GROUP
-   use texts, only: joined
+   use key_table, only: key_table_t
+   use model_types, only: model_t
+   use texts, only: joined, LENGTH
    use triangle_mesh, only: mesh_t, find_group
    implicit none (type, external)
    private
-   public :: mesh_group, defined_name, history_named
+   public :: mesh_group, defined_name, history_named, read_stages
 contains
    !> Place of a group of the mesh that is to be used; a fault names those that there are. Fault EXIT_GROUP: there is
    !> none, one without entities, or two of them; 0 then.
@@ -55,6 +57,22 @@ contains
       found = 0
       if (name /= '') found = defined_name('history', name, names, place, fault)
    end function history_named
+
+   !> The key `stages` of a group, once the stages are known: in which of them it acts, in all without the key. That
+   !> there are stages of these names is known (scene_names).
+   subroutine read_stages(k, model, in_stage, meaning)
+      type(key_table_t), intent(inout) :: k
+      type(model_t), intent(in) :: model
+      logical, allocatable, intent(out) :: in_stage(:)   !< (stages)
+      character(*), intent(in), optional :: meaning      !< Of the key, where it is another one.
+      character(LENGTH), allocatable :: names(:)
+      integer :: s
+
+      if (present(meaning)) call k%texts('stages', names, meaning)
+      if (.not. present(meaning)) call k%texts('stages', names, 'names of stages; default: all')
+      if (k%lists) return
+      in_stage = [(size(names) == 0 .or. any(names == model%stages(s)%name), s=1, size(model%stages))]
+   end subroutine read_stages
 
    pure function listed(names) result(list)
       character(*), intent(in) :: names(:)

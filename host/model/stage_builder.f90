@@ -11,7 +11,7 @@ module stage_builder
    use key_table, only: key_table_t
    use model_types, only: model_t
    use number_pairs, only: read_pairs
-   use scene_parts, only: amplitude_t, stage_t, acts_in, place_of
+   use scene_parts, only: amplitude_t, stage_t, place_of
    use scene_types, only: item_of
    use texts, only: short, LENGTH
    implicit none (type, external)
@@ -34,12 +34,10 @@ contains
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
-      character(*), parameter :: OF_TABLES(*) = [character(6) :: 'times', 'values', 'file'], &
-                                 OF_SHAPES(*) = [character(7) :: 'start', 'period', 'repeats']
       type(amplitude_t) :: amplitude
       character(LENGTH) :: file
       real(wp) :: start, period
-      integer :: shape, repeats, i
+      integer :: shape, repeats
 
       amplitude%scene_item_t = item_of(k%group)
       call k%text('name', amplitude%name, 'name, for the key history of loads', REQUIRED)
@@ -61,13 +59,13 @@ contains
       if (k%lists) return
       allocate (amplitude%arcs(0))
       if (shape /= TABLE) then
-         if (any([(k%given(trim(OF_TABLES(i))), i=1, size(OF_TABLES))]) .or. .not. k%given('period')) then
+         if (k%given('times|values|file') .or. .not. k%given('period')) then
             call raise(fault, EXIT_INPUT, place_of(amplitude)//'history '//trim(amplitude%name)//' has a kind that '// &
                        'needs its period [s], and neither times and values nor a file.')
             return
          end if
          call pairs_of_shape(shape, start, period, repeats, amplitude%times, amplitude%values, amplitude%arcs)
-      else if (any([(k%given(trim(OF_SHAPES(i))), i=1, size(OF_SHAPES))])) then
+      else if (k%given('start|period|repeats')) then
          call raise(fault, EXIT_INPUT, place_of(amplitude)//'start, period and repeats are those of a sine or a '// &
                     'pulse, and history '//trim(amplitude%name)//' is a table; give kind = ''sine'', '// &
                     '''half_sine'', ''haversine'' or ''triangle''.')
@@ -233,7 +231,7 @@ contains
 
       do i = 1, size(model%stages)
          associate (stage => model%stages(i))
-            touching = any([(acts_in(model%contacts(k)%stages, stage%name), k=1, size(model%contacts))])
+            touching = any([(model%contacts(k)%in_stage(i), k=1, size(model%contacts))])
             stage%measure = measure_in(stage%measure, has_inertia(stage%kind), touching)
             if (stage%rho_inf >= 0.0_wp) cycle
             stage%rho_inf = SMOOTH

@@ -3,15 +3,15 @@
 !> displacements that are zeroed, plates, pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
-   use acting_places, only: nodes_of_ground
+   use acting_places, only: nodes_of_ground, held_in
    use generalised_alpha, only: has_rates, has_inertia
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
    use warnings, only: print_warning
    use start_findings, only: balance_t
-   use model_types, only: model_t, factor_at, fix_t, plate_t
+   use model_types, only: model_t, factor_at, factors_of, value_at, fix_t, plate_t
    use porous_domain, only: COUPLED, DRAINED
-   use scene_parts, only: acts_in, place_of, LOAD_AIR, PRESCRIBED_P_A
+   use scene_parts, only: place_of, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)
@@ -113,7 +113,6 @@ contains
    !> Ground that joins or leaves in a dynamic stage where dashpots alone hold the rest upright.
    subroutine look_at_dashpots(model)
       type(model_t), intent(in) :: model
-      logical :: carried(DISPLACEMENTS, size(model%domain%mesh%x, 2)), pressed(size(model%domain%mesh%x, 2))
       integer :: s, i
 
       i = findloc(model%actions%damps, .true., dim=1)
@@ -121,8 +120,9 @@ contains
       do s = 2, size(model%stages)
          if (.not. has_inertia(model%stages(s)%kind)) cycle
          if (all(model%ground(:, s) .eqv. model%ground(:, s - 1))) cycle
-         call find_carried(model, s, carried, pressed)
-         if (any(carried(AT_U_Z, :) .and. nodes_of_ground(model, s))) cycle
+         associate (held => held_in(model, s))
+            if (any(held(AT_U_Z, :) .and. nodes_of_ground(model, s))) cycle
+         end associate
          call print_warning('Regions join or leave with the dynamic stage '//trim(model%stages(s)%name)//', where '// &
             'no &fix of u_z holds the ground: the dashpots of '//trim(model%actions(i)%what)//' do not carry the '// &
             'change of weight, and the ground drifts for ever. Let them join or leave in a static stage, with a '// &
@@ -163,7 +163,7 @@ contains
    !> Water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
    subroutine look_at_water_outside(model)
       type(model_t), intent(in) :: model
-      logical :: carried(DISPLACEMENTS, size(model%domain%mesh%x, 2)), pressed(size(model%domain%mesh%x, 2))
+      logical, allocatable :: held(:, :), pressed(:)
       real(wp) :: pressure, most
       integer :: i, s, k, bare
 
@@ -171,18 +171,18 @@ contains
          associate (fix => model%fixes(i), edges => model%domain%mesh%groups(model%fixes(i)%group)%edges)
             if (fix%field /= AT_P_W .or. fix%hold) cycle
             do s = 1, size(model%stages)
-               if (.not. has_rates(model%stages(s)%kind) .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
-               call find_carried(model, s, carried, pressed)
+               if (.not. (fix%in_stage(s) .and. has_rates(model%stages(s)%kind))) cycle
+               held = held_in(model, s)
+               pressed = nodes_under_pressure(model, s)
                bare = 0
                most = 0.0_wp
                do k = 1, size(edges, 2)
                   associate (x => model%domain%mesh%x, middle => edges(3, k))
                      if (pressed(middle)) cycle
                      ! What is held along the normal needs no load.
-                     if (carried(merge(1, 2, abs(x(2, edges(2, k)) - x(2, edges(1, k))) > &
-                                             abs(x(1, edges(2, k)) - x(1, edges(1, k)))), middle)) cycle
-                     pressure = maxval((fix%value + fix%value_slope*(x(2, middle) - fix%datum)) &
-                                       *extremes(model, fix%amplitude))
+                     if (held(merge(1, 2, abs(x(2, edges(2, k)) - x(2, edges(1, k))) > &
+                                          abs(x(1, edges(2, k)) - x(1, edges(1, k)))), middle)) cycle
+                     pressure = maxval(value_at(fix, x(2, middle))*factors_of(model, fix%amplitude))
                   end associate
                   if (.not. pressure > 0.0_wp) cycle
                   bare = bare + 1
@@ -199,41 +199,21 @@ contains
       end do
    end subroutine look_at_water_outside
 
-   !> Displacements that something holds or moves, and middles of edges under a pressure, in a stage.
-   subroutine find_carried(model, number, carried, pressed)
+   !> Nodes on which something presses in a stage.
+   pure function nodes_under_pressure(model, number) result(pressed)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number   !< Of the stage.
-      logical, intent(out) :: carried(:, :), pressed(:)
+      logical :: pressed(size(model%domain%mesh%x, 2))
       integer :: i
 
-      carried = .false.
       pressed = .false.
-      associate (groups => model%domain%mesh%groups, name => model%stages(number)%name)
-         do i = 1, size(model%fixes)
-            associate (fix => model%fixes(i))
-               if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, name)) &
-                  carried(fix%field, groups(fix%group)%nodes) = .true.
-            end associate
-         end do
-         do i = 1, size(model%actions)
-            associate (one => model%actions(i))
-               if (one%bears .and. one%group > 0 .and. acts_in(one%stages, name)) &
-                  pressed(groups(one%group)%nodes) = .true.
-            end associate
-         end do
-      end associate
-   end subroutine find_carried
-
-   !> Least and largest factor of a history. [-]
-   pure function extremes(model, amplitude) result(factors)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: amplitude   !< As of factor_at.
-      real(wp) :: factors(2)
-
-      factors = 1.0_wp
-      if (amplitude > 0) factors = [minval(model%amplitudes(amplitude)%values), &
-                                    maxval(model%amplitudes(amplitude)%values)]
-   end function extremes
+      do i = 1, size(model%actions)
+         associate (one => model%actions(i))
+            if (one%bears .and. one%group > 0 .and. one%in_stage(number)) &
+               pressed(model%domain%mesh%groups(one%group)%nodes) = .true.
+         end associate
+      end do
+   end function nodes_under_pressure
 
    !> A displacement that does not begin from rest in a dynamic stage: what moves at once is struck.
    subroutine look_at_motion(model, fix)
@@ -248,13 +228,13 @@ contains
       associate (h => model%amplitudes(fix%amplitude))
          do s = 1, size(model%stages)
             if (s > 1) start = start + model%stages(s - 1)%duration
-            if (.not. has_inertia(model%stages(s)%kind) .or. .not. acts_in(fix%stages, model%stages(s)%name)) cycle
+            if (.not. (fix%in_stage(s) .and. has_inertia(model%stages(s)%kind))) cycle
             after = 0.0_wp
             i = count(h%times <= max(start, fix%from))
             if (i > 0) after = fix%value*slope_beside(h%times, h%values, h%arcs, i, 1)
             before = 0.0_wp
             if (s > 1 .and. fix%from <= start) then
-               if (has_inertia(model%stages(s - 1)%kind) .and. acts_in(fix%stages, model%stages(s - 1)%name)) cycle
+               if (has_inertia(model%stages(s - 1)%kind) .and. fix%in_stage(s - 1)) cycle
             end if
             if (s == 1 .and. fix%field == AT_U_Z) then
                do i = 1, size(model%initials)
@@ -283,8 +263,7 @@ contains
 
       if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%hold .or. fix%of_body) return
       do s = 1, size(model%stages) - 1
-         if (.not. (model%stages(s)%zero_displacements .and. acts_in(fix%stages, model%stages(s)%name) .and. &
-                    acts_in(fix%stages, model%stages(s + 1)%name))) cycle
+         if (.not. (model%stages(s)%zero_displacements .and. all(fix%in_stage(s:s + 1)))) cycle
          zeroed = sum(model%stages(:s)%duration)
          if (fix%from >= zeroed - SPACINGS*spacing(zeroed) .or. fix%until <= zeroed + SPACINGS*spacing(zeroed)) cycle
          if (.not. abs(factor_at(model, fix%amplitude, zeroed))*max(abs(fix%value), abs(fix%value_slope)) > 0.0_wp) &
@@ -313,7 +292,7 @@ contains
       end if
       area = r(2) - r(1)
       if (model%domain%axisymmetric) area = PI*(r(2)**2 - r(1)**2)
-      forces = plate%force*extremes(model, plate%amplitude)
+      forces = plate%force*factors_of(model, plate%amplitude)
       ! A boundary along z has no area that a vertical force could press on.
       if (area > 0.0_wp .and. maxval(abs(forces)) > HARD*area) call print_warning(place_of(plate)// &
          'the force of the plate '''// &

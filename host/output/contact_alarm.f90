@@ -9,7 +9,6 @@ module contact_alarm
    use faults, only: fault_t
    use run_observer, only: observer_t, STAGE_BEGINS, STEP
    use run_state, only: run_t
-   use scene_parts, only: acts_in
    use texts, only: short
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
@@ -64,7 +63,7 @@ contains
          associate (t => interfaces(i), one => run%model%contacts(i), x => run%state%x)
             if (.not. t%acts) cycle
             if (run%at%stage > 1) then
-               if (acts_in(one%stages, run%model%stages(run%at%stage - 1)%name)) cycle
+               if (one%in_stage(run%at%stage - 1)) cycle
             end if
             at = maxloc(t%probe%pressure, 1)
             depth = t%probe%pressure(at)/one%options%penalty

@@ -2,7 +2,7 @@
 !> Contacts and plates as rows of tables.
 module contact_rows
    use kinds, only: wp
-   use boundary_loads, only: plate_loads
+   use boundary_conditions, only: plate_loads
    use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions
    use model_types, only: model_t, plate_t
    use run_state, only: run_t
@@ -87,28 +87,24 @@ contains
    !> start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step. A
    !> state that a kernel refuses has none.
    function contact_nodes(run) result(table)
-      type(run_t), intent(in) :: run   !< It has contacts.
+      type(run_t), intent(inout) :: run   !< The contacts of the run are probed.
       real(wp), allocatable :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
-      type(contacts_t) :: trial
       real(wp), allocatable :: shear(:)
       integer :: c, i
 
       allocate (table(8, 0))
       select type (contacts => run%system%contacts)
       type is (contacts_t)
-         trial = contacts
-      class default
-         return
+         if (.not. contacts%probe(run%state%x)) return
+         do c = 1, size(run%model%contacts)
+            associate (t => contacts%interfaces(c), found => contacts%interfaces(c)%probe)
+               if (.not. t%acts) cycle
+               shear = tangential_tractions(t)
+               table = reshape([table, (real(c, wp), t%slave%x0(:, i), found%weight(i), &
+                                        found%weight(i)/found%whole(i), found%gap(i), found%pressure(i), shear(i), &
+                                        i=1, size(shear))], [8, size(table, 2) + size(shear)])
+            end associate
+         end do
       end select
-      if (.not. trial%probe(run%state%x)) return
-      do c = 1, size(run%model%contacts)
-         associate (t => trial%interfaces(c), found => trial%interfaces(c)%probe)
-            if (.not. t%acts) cycle
-            shear = tangential_tractions(t)
-            table = reshape([table, (real(c, wp), t%slave%x0(:, i), found%weight(i), found%weight(i)/found%whole(i), &
-                                     found%gap(i), found%pressure(i), shear(i), i=1, size(shear))], &
-                            [8, size(table, 2) + size(shear)])
-         end associate
-      end do
    end function contact_nodes
 end module contact_rows

@@ -10,7 +10,7 @@ module cycles_alarm
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
    use run_observer, only: observer_t, BEGINS, STAGE_BEGINS, STEP
    use run_state, only: run_t, now_in
-   use scene_parts, only: amplitude_at, acts_in
+   use scene_parts, only: amplitude_at
    use texts, only: short, whole
    use turns, only: follow
    use unknown_fields, only: DISPLACEMENTS
@@ -176,7 +176,7 @@ contains
       associate (list => run%model%actions)
          acts = .not. any(list%amplitude == amplitude)
          do i = 1, size(list)
-            if (list(i)%amplitude == amplitude) acts = acts .or. acts_in(list(i)%stages, run%stage%name)
+            if (list(i)%amplitude == amplitude) acts = acts .or. list(i)%in_stage(run%at%stage)
          end do
       end associate
    end function acts

@@ -4,6 +4,7 @@
 !> again.
 module field_files
    use archive, only: archive_t
+   use given_pressures, only: set_middles
    use kinds, only: wp
    use model_types, only: model_t
    use porous_domain, only: domain_t, model_state_t
@@ -16,7 +17,7 @@ module field_files
    use texts, only: whole
    implicit none (type, external)
    private
-   public :: field_observer_t, check_mesh, all_pressures
+   public :: field_observer_t, check_mesh
 
    type, extends(observer_t) :: field_observer_t
       real(wp), allocatable :: times(:)   !< Times of the fields written so far [s].
@@ -161,7 +162,8 @@ contains
       call put(file, 'time', [run%state%time], 's', 'time')
       allocate (list(0))
       associate (domain => run%domain, state => run%state)
-         call all_pressures(domain, state, x)
+         x = state%x
+         call set_middles(domain, x(AT_P_W:, :))
          call means(domain, state, cells)
          call add('nodes', 'displacement', 'm', 'u_r, u_z, 0', with_zero(state%x))
          call add('nodes', 'velocity', 'm/s', 'v_r, v_z, 0', with_zero(state%v))
@@ -216,25 +218,6 @@ contains
 
       write (name, '(a,i6.6,a)') 'fields_', number, '.h5'
    end function file_of
-
-   !> Unknowns of every node: pressures of the middles of sides too where only vertices have their own. By the mean of
-   !> the ends: docs/theory/host.md section 3.1.
-   pure subroutine all_pressures(domain, state, x)
-      type(domain_t), intent(in) :: domain
-      type(model_state_t), intent(in) :: state
-      real(wp), intent(out) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
-      integer :: e, i
-
-      x = state%x
-      if (domain%n_p == 6) return
-      do e = 1, size(domain%mesh%t6, 2)
-         associate (node => domain%mesh%t6(:, e))
-            do i = 1, 3
-               x(AT_P_W:, node(3 + i)) = 0.5_wp*(state%x(AT_P_W:, node(i)) + state%x(AT_P_W:, node(mod(i, 3) + 1)))
-            end do
-         end associate
-      end do
-   end subroutine all_pressures
 
    !> Means over the elements, in the order of the list.
    pure subroutine means(domain, state, cells)

@@ -67,12 +67,12 @@ contains
 
       select case (event)
       case (FITS)
-         if (allocated(self%folder)) call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
+         call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
       case (BEGINS)
          if (run%steps == 0 .and. any(run%domain%regions%stiffness_damping > 0.0_wp)) &
             allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
          if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS// &
-                                                     indicator_columns(run%model), run%steps > 0, self%table, fault)
+                                                     indicator_columns(run%model), self%table, fault)
       case (STEP)
          call book(self, run, fault)
       case (TAKEN_OVER)

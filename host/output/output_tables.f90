@@ -6,7 +6,7 @@ module output_tables
    use contact_rows, only: contact_columns, contact_row, contact_nodes
    use csv, only: csv_t, new_csv, check_csv, write_row, hand_over, close_csv, is_open, NUMBERS
    use faults, only: fault_t
-   use field_files, only: all_pressures
+   use given_pressures, only: set_middles
    use kinds, only: wp
    use model_types, only: model_t, point_t
    use named_points, only: values_at
@@ -14,7 +14,7 @@ module output_tables
    use run_observer, only: observer_t, FITS, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table, write_table
-   use unknown_fields, only: FIELDS, DISPLACEMENTS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
    public :: table_observer_t
@@ -52,14 +52,12 @@ contains
       select case (event)
       case (FITS)
          call check_csv(self%folder//'/histories.csv', self%history%bytes, fault)
-         if (fault%code == 0 .and. has_contact_table(run%model)) &
-            call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
-         if (fault%code == 0 .and. self%reactions%bytes > 0) &
-            call check_csv(reactions_of(self%folder, run%stage%name), self%reactions%bytes, fault)
+         call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
+         call check_csv(reactions_of(self%folder, run%stage%name), self%reactions%bytes, fault)
       case (BEGINS)
-         call open_table(self%folder//'/histories.csv', history_columns(run%model), run%steps > 0, self%history, fault)
-         if (has_contact_table(run%model)) call open_table(self%folder//'/contact.csv', contact_columns(run%model), &
-                                                           run%steps > 0, self%contact, fault)
+         call open_table(self%folder//'/histories.csv', history_columns(run%model), self%history, fault)
+         if (size(run%model%contacts) + size(run%model%plates) > 0) &
+            call open_table(self%folder//'/contact.csv', contact_columns(run%model), self%contact, fault)
          if (fault%code /= 0 .or. run%steps > 0) return
          call write_points(self%folder, run%model, fault)
          if (fault%code == 0) call write_history(self%history, run, fault)
@@ -96,12 +94,6 @@ contains
       call hand_over(self%contact, fault)
       call hand_over(self%reactions, fault)
    end subroutine write_rows
-
-   pure logical function has_contact_table(model)
-      type(model_t), intent(in) :: model
-
-      has_contact_table = size(model%contacts) + size(model%plates) > 0
-   end function has_contact_table
 
    pure function history_columns(model) result(head)
       type(model_t), intent(in) :: model
@@ -153,8 +145,7 @@ contains
       if (.not. is_open(self%reactions)) then
          head = reaction_columns(run)
          if (head == '') return
-         call open_table(reactions_of(self%folder, run%stage%name), head, self%reactions%bytes > 0, self%reactions, &
-                         fault)
+         call open_table(reactions_of(self%folder, run%stage%name), head, self%reactions, fault)
          if (fault%code /= 0) return
       end if
       write (self%reactions%row, NUMBERS) reaction_row(run)
@@ -179,7 +170,8 @@ contains
       integer :: i, e, g
 
       associate (state => run%state, mesh => run%domain%mesh, gauss => run%domain%gauss, n => run%domain%rule)
-         call all_pressures(run%domain, state, x)
+         x = state%x
+         call set_middles(run%domain, x(AT_P_W:, :))
          call write_table(folder//'nodes_'//name, 'r,z,u_r,u_z,p_w,p_c,v_r,v_z', &
                           reshape([(mesh%x(:, i), x(:, i), state%v(:DISPLACEMENTS, i), i=1, size(x, 2))], &
                                   [8, size(x, 2)]), fault)

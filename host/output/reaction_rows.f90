@@ -4,12 +4,11 @@
 !> &fix that prescribes it, so that the columns add up to the whole. docs/theory/host.md section 9.1.
 module reaction_rows
    use kinds, only: wp
-   use boundary_conditions, only: prescribing_fixes, forces_of_supports
-   use boundary_loads, only: force_of
+   use boundary_conditions, only: prescribing_fixes, forces_of_supports, force_of
    use csv, only: quoted
    use model_types, only: model_t, factor_at
    use run_state, only: run_t
-   use scene_parts, only: acts_in, LOAD_WATER, LOAD_RAIN, LOAD_AIR, stage_t
+   use scene_parts, only: LOAD_WATER, LOAD_RAIN, LOAD_AIR
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -27,7 +26,7 @@ contains
       integer, allocatable :: list(:, :)
       integer :: i
 
-      call list_columns(run%model, run%stage, list)
+      call list_columns(run%model, run%at%stage, list)
       head = ''
       if (size(list, 2) > 0) head = 'time,time_of_forces'
       do i = 1, size(list, 2)
@@ -55,14 +54,14 @@ contains
    !> (2, columns) group and suffix, in the order in which the scene names them.
    subroutine list_columns(model, stage, list)
       type(model_t), intent(in) :: model
-      type(stage_t), intent(in) :: stage
+      integer, intent(in) :: stage   !< Number of the stage.
       integer, allocatable, intent(out) :: list(:, :)
       integer :: i
 
       allocate (list(2, 0))
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
-            if (.not. acts_in(fix%stages, stage%name)) cycle
+            if (.not. fix%in_stage(stage)) cycle
             if (fix%field <= DISPLACEMENTS) then
                call add(fix%group, fix%field)
             else
@@ -74,7 +73,7 @@ contains
       end do
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
-            if (.not. acts_in(load%stages, stage%name)) cycle
+            if (.not. load%in_stage(stage)) cycle
             if (load%of_body) then
                call add(load%group, LOAD_Z)
                cycle
@@ -113,7 +112,7 @@ contains
       real(wp), allocatable :: sums(:, :)
       integer :: i, k
 
-      call list_columns(run%model, run%stage, list)
+      call list_columns(run%model, run%at%stage, list)
       allocate (sums(SUFFIXES, size(run%domain%mesh%groups)), source=0.0_wp)
       call add_reactions()
       call add_loads()
@@ -170,7 +169,7 @@ contains
 
          do i = 1, size(run%model%loads)
             associate (load => run%model%loads(i), field => run%dofs%field)
-               if (.not. acts_in(load%stages, run%stage%name)) cycle
+               if (.not. load%in_stage(run%at%stage)) cycle
                vector = force_of(load, 1.0_wp)
                factor = factor_at(run%model, load%amplitude, run%state%time - run%scheme%dt)
                factor = factor + run%scheme%l_f*(factor_at(run%model, load%amplitude, run%state%time) - factor)

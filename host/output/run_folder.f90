@@ -4,23 +4,19 @@
 !> file stays: were it removed, a run that has opened it would lock what the next one cannot see.
 module run_folder
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
-   use archive, only: archive_t
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use field_files, only: check_mesh
    use files, only: make_folder
    use run_observer, only: observer_t, FITS, BEGINS, ENDS
    use run_state, only: run_t
-   use scene_parts, only: FINGERPRINT_LENGTH
    use warnings, only: print_warning
    implicit none (type, external)
    private
    public :: folder_observer_t
 
    type, extends(observer_t) :: folder_observer_t
-      character(FINGERPRINT_LENGTH) :: origin = ''   !< Fingerprint of the scene that began the run.
-      integer(c_int) :: lock = -1                    !< Number of the locked file; -1: there is none.
+      integer(c_int) :: lock = -1   !< Number of the locked file; -1: there is none.
    contains
-      procedure :: exchange
       procedure :: hear
    end type folder_observer_t
 
@@ -46,14 +42,6 @@ module run_folder
       end function close_number
    end interface
 contains
-   !> Exchanges the fingerprint of the scene that began the run.
-   subroutine exchange(self, archive)
-      class(folder_observer_t), intent(inout) :: self
-      class(archive_t), intent(inout) :: archive
-
-      call archive%exchange('origin', self%origin)
-   end subroutine exchange
-
    !> Takes the folder, which a new run makes, and gives it free. Faults: EXIT_RESTART where it does not hold the run:
    !> its mesh is of another scene; EXIT_OUTPUT: another run writes to it.
    subroutine hear(self, event, run, fault)
@@ -65,12 +53,9 @@ contains
 
       select case (event)
       case (FITS)
-         call check_mesh(self%folder, self%origin, fault)
+         call check_mesh(self%folder, run%model%origin%fingerprint, fault)
       case (BEGINS)
-         if (run%steps == 0) then
-            self%origin = run%model%origin%fingerprint
-            call make_folder(self%folder)
-         end if
+         if (run%steps == 0) call make_folder(self%folder)
          call lock_folder(self%folder, self%lock, fault)
       case (ENDS)
          if (self%lock >= 0) done = close_number(self%lock)

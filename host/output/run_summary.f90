@@ -147,11 +147,11 @@ contains
       digits = DIGITS_SAID
       if (present(part)) digits = min(precision(value), max(digits, 1 + order(value) - order(part)))
       if (unit == 'kPa' .or. abs(value) >= 0.1_wp .or. .not. abs(value) > 0.0_wp) then
-         text = rounded(value, digits)//' '//unit
+         text = short(value, digits)//' '//unit
       else if (abs(value) >= 1.0e-4_wp) then
-         text = rounded(1.0e3_wp*value, digits)//' m'//unit
+         text = short(1.0e3_wp*value, digits)//' m'//unit
       else
-         text = rounded(1.0e6_wp*value, digits)//' u'//unit
+         text = short(1.0e6_wp*value, digits)//' u'//unit
       end if
    end function with_unit
 
@@ -162,29 +162,6 @@ contains
       order = 0
       if (abs(value) > 0.0_wp) order = floor(log10(abs(value)))
    end function order
-
-   !> A number of so many significant digits.
-   pure function rounded(value, digits) result(text)
-      real(wp), intent(in) :: value
-      integer, intent(in) :: digits
-      character(:), allocatable :: text
-      character(32) :: line
-      real(wp) :: near
-
-      write (line, '(es'//whole(digits + 8)//'.'//whole(digits - 1)//'e3)') value
-      read (line, *) near
-      text = short(near)
-      ! More digits than a number of a message has.
-      if (abs(near - value_of(text)) <= 0.0_wp) return
-      write (line, '(f0.'//whole(max(0, digits - 1 - order(near)))//')') near
-      text = trim(line)
-   contains
-      pure real(wp) function value_of(number)
-         character(*), intent(in) :: number
-
-         read (number, *) value_of
-      end function value_of
-   end function rounded
 
    !> "1 step", "2 steps".
    pure function counted(number, noun) result(text)

@@ -9,16 +9,15 @@ module run_tables
    private
    public :: open_table, exchange_table, write_table
 contains
-   !> A new table; or, after a restart, the one of the run as it was at its checkpoint. Fault EXIT_OUTPUT: it cannot be
-   !> written.
-   subroutine open_table(path, head, resume, table, fault)
+   !> A new table; or, after a restart, the one of the run as it was at its checkpoint, if it had a row. Fault
+   !> EXIT_OUTPUT: it cannot be written.
+   subroutine open_table(path, head, table, fault)
       character(*), intent(in) :: path, head
-      logical, intent(in) :: resume
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault
 
       if (fault%code /= 0) return
-      if (resume) then
+      if (table%bytes > 0) then
          call resume_csv(path, head, table, fault)
       else
          call new_csv(path, head, table, fault)

@@ -8,7 +8,6 @@ module run_state
    use start_findings, only: tension_t
    use model_types, only: problem_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
-   use scene_parts, only: acts_in
    use solution, only: stage_state_t
    use sparsity_pattern, only: make_pattern
    use texts, only: short
@@ -44,7 +43,7 @@ contains
       run%at%stage = number
       run%stage => run%model%stages(number)
       if (allocated(run%system%contacts)) call run%system%contacts%act( &
-         [(acts_in(run%model%contacts(i)%stages, run%stage%name), i=1, size(run%model%contacts))])
+         [(run%model%contacts(i)%in_stage(number), i=1, size(run%model%contacts))])
    end subroutine enter_stage
 
    !> Where a run is at the end of the step under way, for a warning.

@@ -2,15 +2,16 @@
 !> Whether the ground of a scene begins in balance: the forces that nothing balances at time 0, as a stress.
 !> docs/theory/host.md section 8.
 module start_balance
-   use acting_places, only: acting_stages
    use kinds, only: wp
-   use boundary_loads, only: force_of, plate_loads
+   use acting_places, only: held_in, TURN
+   use boundary_conditions, only: force_of, plate_loads
+   use generalised_alpha, only: has_inertia
    use start_findings, only: balance_t
-   use model_types, only: model_t, factor_at, load_t, unknowns_of
+   use model_types, only: model_t, factor_at, value_at, load_t, unknowns_of
    use newton_step, only: unbalanced_forces
    use porous_domain, only: pressures_at, is_present
    use run_state, only: run_t, enter_stage
-   use scene_parts, only: acts_in, LOAD_PRESSURE
+   use scene_parts, only: LOAD_PRESSURE
    use unknown_fields, only: DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
@@ -90,12 +91,11 @@ contains
       integer :: k, i
 
       most = 0.0_wp
-      if (load%kind /= LOAD_PRESSURE .or. .not. acts_in(load%stages, run%model%stages(1)%name)) return
+      if (load%kind /= LOAD_PRESSURE .or. .not. load%in_stage(1)) return
       associate (x => run%domain%mesh%x, edges => run%domain%mesh%groups(load%group)%edges)
          do k = 1, size(edges, 2)
             do i = 1, 2
-               given = factor_at(run%model, load%amplitude, 0.0_wp)*(load%value &
-                                                                + load%value_slope*(x(2, edges(i, k)) - load%datum))
+               given = factor_at(run%model, load%amplitude, 0.0_wp)*value_at(load, x(2, edges(i, k)))
                p_w = run%state%x(AT_P_W, edges(i, k))
                if (abs(given - p_w) > SMALL*max(given, p_w)) then
                   most = 0.0_wp
@@ -111,31 +111,20 @@ contains
    subroutine let_go_of_held(model, forces)
       type(model_t), intent(in) :: model
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
-      integer :: i, k, at
+      logical :: held(TURN, size(model%domain%mesh%x, 2))
+      integer :: i
 
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
-            if (fix%field > DISPLACEMENTS .or. .not. acts_in(fix%stages, model%stages(1)%name)) cycle
-            do k = 1, size(nodes)
-               at = model%dofs%of(fix%field, nodes(k))
-               if (at > 0) forces(at) = 0.0_wp
-            end do
-         end associate
-      end do
+      held = held_in(model, 1)
       do i = 1, size(model%actions)
          associate (one => model%actions(i))
-            if (.not. one%damps .or. all(acting_stages(model, one) /= model%stages(1)%name)) cycle
-            associate (nodes => model%domain%mesh%groups(one%group)%nodes)
-               do k = 1, size(nodes)
-                  do at = 1, DISPLACEMENTS
-                     if (model%dofs%of(at, nodes(k)) > 0) forces(model%dofs%of(at, nodes(k))) = 0.0_wp
-                  end do
-               end do
-            end associate
+            if (one%damps .and. one%in_stage(1) .and. has_inertia(model%stages(1)%kind)) &
+               held(:, model%domain%mesh%groups(one%group)%nodes) = .true.
          end associate
       end do
+      held(:, model%domain%bodies) = .true.
       do i = 1, size(forces)
-         if (any(model%domain%bodies == model%dofs%node(i))) forces(i) = 0.0_wp
+         if (model%dofs%field(i) <= DISPLACEMENTS) forces(i) = merge(0.0_wp, forces(i), &
+                                                                     held(model%dofs%field(i), model%dofs%node(i)))
       end do
    end subroutine let_go_of_held
 
@@ -150,7 +139,7 @@ contains
       call carry(touched)
       do i = 1, size(run%model%loads)
          associate (one => run%model%loads(i))
-            if (.not. acts_in(one%stages, run%model%stages(1)%name) .or. water_in(run, one) > 0.0_wp) cycle
+            if (.not. one%in_stage(1) .or. water_in(run, one) > 0.0_wp) cycle
             call carry(force_of(one, factor_at(run%model, one%amplitude, 0.0_wp)))
          end associate
       end do

@@ -4,8 +4,8 @@
 module step_attempt
    use kinds, only: wp
    use faults, only: fault_t
-   use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations
-   use boundary_loads, only: load_at
+   use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations, &
+                                  load_at
    use generalised_alpha, only: has_rates, has_inertia
    use model_types, only: gravity_at, share_over
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
@@ -15,7 +15,6 @@ module step_attempt
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_landings, only: LEAST_SPACINGS
    use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
-   use scene_parts, only: acts_in
    use solution, only: stage_state_t
    implicit none (type, external)
    private
@@ -99,7 +98,7 @@ contains
          ! A shorter step helps a singular matrix only where it is points of the material that resist with nothing, or a
          ! contact that an iterate has opened.
          lost = outcome == BODY_FREE .and. run%assembly%replaced == 0
-         if (at%step > 0) lost = lost .and. .not. any([(acts_in(run%model%contacts(i)%stages, run%stage%name), &
+         if (at%step > 0) lost = lost .and. .not. any([(run%model%contacts(i)%in_stage(at%stage), &
                                                         i=1, size(run%model%contacts))])
          share = merge(min(run%assembly%bad%factor, 0.5_wp), 0.5_wp, outcome == MATERIAL_FAILED)
          if (at%cuts > run%stage%cuts .or. outcome == SOLVER_FAILED .or. share*dt < shortest_step(run) .or. lost) then
@@ -142,8 +141,8 @@ contains
       integer :: i
 
       associate (c => run%constraint, until => run%state%time + dt)
-         c%load_0 = load_at(run%model, run%stage, run%state%time)
-         c%load_1 = load_at(run%model, run%stage, until)
+         c%load_0 = load_at(run%model, run%at%stage, run%state%time)
+         c%load_1 = load_at(run%model, run%at%stage, until)
          do i = 1, size(run%terms)
             if (fault%code == 0) call run%terms(i)%term%before_step(dt, run%problem_t, fault)
          end do

@@ -7,10 +7,10 @@
 !> docs/theory/host.md section 4.5.
 module step_landings
    use kinds, only: wp
-   use boundary_loads, only: load_at
+   use boundary_conditions, only: load_at
    use history_shapes, only: kinks_of
    use run_state, only: run_t
-   use scene_parts, only: amplitude_t, amplitude_at, acts_in
+   use scene_parts, only: amplitude_t, amplitude_at
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -39,7 +39,7 @@ contains
                                          CHORD_SHARE*run%stage%step_tolerance))
       end do
       do i = 1, size(run%model%fixes)
-         if (.not. acts_in(run%model%fixes(i)%stages, run%stage%name)) cycle
+         if (.not. run%model%fixes(i)%in_stage(run%at%stage)) cycle
          if (run%model%fixes(i)%from > now + close) next = min(next, run%model%fixes(i)%from)
          if (run%model%fixes(i)%until > now + close) next = min(next, run%model%fixes(i)%until)
       end do
@@ -69,7 +69,7 @@ contains
       end do
       do i = 1, size(run%model%fixes)
          associate (fix => run%model%fixes(i))
-            if (.not. acts_in(fix%stages, run%stage%name)) cycle
+            if (.not. fix%in_stage(run%at%stage)) cycle
             if (fix%from < now - close .or. fix%until > asked - close) cycle
             until = min(until, merge(fix%from, fix%until, fix%from > now + close))
          end associate
@@ -135,8 +135,8 @@ contains
          end do
          do i = 1, size(run%model%fixes)
             associate (fix => run%model%fixes(i))
-               if (acts_in(fix%stages, stage%name)) is_break = is_break .or. abs(fix%from - time) < LAST_STEP*dt &
-                                                               .or. abs(fix%until - time) < LAST_STEP*dt
+               if (fix%in_stage(run%at%stage)) is_break = is_break .or. abs(fix%from - time) < LAST_STEP*dt &
+                                                          .or. abs(fix%until - time) < LAST_STEP*dt
             end associate
          end do
       end associate
@@ -170,9 +170,9 @@ contains
       integer :: i, k
 
       associate (x => run%state%x, c => run%constraint, number => run%at%stage)
-         load = load_at(run%model, run%model%stages(number), run%state%time)
+         load = load_at(run%model, number, run%state%time)
          before = 0.0_wp
-         if (number > 1) before = load_at(run%model, run%model%stages(number - 1), run%state%time)
+         if (number > 1) before = load_at(run%model, number - 1, run%state%time)
          at_once = norm2(load - before) > SAME*norm2(load)
          if (number == 1) at_once = at_once .or. abs(run%state%gravity) > 0.0_wp .or. &
             any(abs(x(AT_P_W:AT_P_C, :) - spread(x(AT_P_W:AT_P_C, 1), 2, size(x, 2))) > SAME*maxval(abs(x(AT_P_W:, :))))

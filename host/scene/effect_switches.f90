@@ -81,8 +81,8 @@ contains
       scene%absent = pack(without, [(.not. is_present(scene%groups, trim(without(i))), i=1, size(without))])
       do i = 1, size(without)
          call remove(scene, trim(without(i)), why)
-         if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%file)//': without = '//trim(without(i))//': '// &
-                                   why//'.')
+         if (why /= '') call raise(fault, EXIT_INPUT, trim(scene%origin%file)//': without = '//trim(without(i))// &
+                                   ': '//why//'.')
       end do
    end subroutine remove_effects
 

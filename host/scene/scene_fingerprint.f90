@@ -5,11 +5,11 @@ module scene_fingerprint
    use, intrinsic :: iso_fortran_env, only: int64
    use files, only: read_whole
    use namelists, only: group_t
-   use scene_parts, only: FINGERPRINT_LENGTH
-   use texts, only: lower_case
+   use scene_parts, only: origin_t
+   use texts, only: lower_case, whole
    implicit none (type, external)
    private
-   public :: fingerprint_of, hashes_of
+   public :: origin_of
 
    ! Two polynomial hashes modulo primes below 2**31: products stay below 2**63.
    integer(int64), parameter :: PRIMES(2) = [2147483647_int64, 2147483629_int64], BASES(2) = [65599_int64, 31337_int64]
@@ -17,24 +17,22 @@ module scene_fingerprint
    character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds', 'goals']
 
 contains
-   !> Fingerprint of groups as 16 hexadecimal digits. A file that cannot be read counts by its name alone.
-   function fingerprint_of(groups) result(text)
+   !> What tells a scene from others: the fingerprint of its groups, as 16 hexadecimal digits, and two numbers for every
+   !> group, which differ where the group does. A file that cannot be read counts by its name alone. The name of the
+   !> scene is that of a key, which is not read here.
+   type(origin_t) function origin_of(file, groups) result(origin)
+      character(*), intent(in) :: file
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
-      character(FINGERPRINT_LENGTH) :: text
-
-      write (text, '(2z8.8)') hash_of(groups)
-   end function fingerprint_of
-
-   !> Two numbers for every group, which differ where the group does.
-   function hashes_of(groups) result(hashes)
-      type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
-      integer :: hashes(2*size(groups))
       integer :: g
 
+      origin%file = file
+      write (origin%fingerprint, '(2z8.8)') hash_of(groups)
+      allocate (origin%hashes(2*size(groups)), origin%groups(size(groups)))
       do g = 1, size(groups)
-         hashes(2*g - 1:2*g) = int(hash_of(groups(g:g)))
+         origin%hashes(2*g - 1:2*g) = int(hash_of(groups(g:g)))
+         origin%groups(g) = '&'//trim(groups(g)%name)//' in line '//whole(groups(g)%line)
       end do
-   end function hashes_of
+   end function origin_of
 
    function hash_of(groups) result(hash)
       type(group_t), intent(in) :: groups(:)

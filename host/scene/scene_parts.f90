@@ -10,8 +10,8 @@ module scene_parts
    use unknown_fields, only: FIELDS, FIELD_NAMES
    implicit none (type, external)
    private
-   public :: scene_item_t, amplitude_t, stage_t
-   public :: NAME_LENGTH, FINGERPRINT_LENGTH, NEVER, acts_in, place_of, amplitude_at
+   public :: origin_t, scene_item_t, amplitude_t, stage_t
+   public :: NAME_LENGTH, FINGERPRINT_LENGTH, NEVER, place_of, amplitude_at
    public :: PRESCRIBED_P_A, PRESCRIBED_WORDS, PRESCRIBED_OF_BODY
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
              LOAD_OF_BODY
@@ -30,6 +30,15 @@ module scene_parts
    integer, parameter :: LOAD_FORCE_R = 7, LOAD_FORCE_Z = 8   !< &load kind: on every node of a group [kN].
    integer, parameter :: LOAD_OF_BODY = 9     !< &load kind: on a coordinate of a plate alone; LOAD_FORCE_Z.
    real(wp), parameter :: NEVER = huge(1.0_wp)   !< A limit of times or values that is none.
+
+   !> Which scene a model is of, for files of results and sentences.
+   type :: origin_t
+      character(PATH_LENGTH) :: file = ''
+      character(NAME_LENGTH) :: name = ''
+      character(FINGERPRINT_LENGTH) :: fingerprint = ''
+      integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
+      character(LENGTH), allocatable :: groups(:)    !< Where each stands, as '&load in line 7'.
+   end type origin_t
 
    !> Where a group of the scene begins, for sentences about it.
    type :: scene_item_t
@@ -96,11 +105,4 @@ contains
          factor = v(low) + (v(high) - v(low))*share
       end associate
    end function amplitude_at
-
-   !> Whether something limited to stages takes part in one; an empty list means every stage.
-   pure logical function acts_in(stages, name)
-      character(*), intent(in) :: stages(:), name   !< Names of stages. (stages named) or (0).
-
-      acts_in = size(stages) == 0 .or. any(stages == name)
-   end function acts_in
 end module scene_parts

@@ -3,16 +3,14 @@
 !> (scene_keys lists who does), which resolves its names.
 module scene_types
    use namelists, only: group_t
-   use texts, only: LENGTH, PATH_LENGTH
-   use scene_parts, only: scene_item_t, FINGERPRINT_LENGTH
+   use scene_parts, only: origin_t, scene_item_t
+   use texts, only: LENGTH
    implicit none (type, external)
    private
    public :: scene_t, item_of, groups_named
 
    type :: scene_t
-      character(PATH_LENGTH) :: file = ''
-      character(FINGERPRINT_LENGTH) :: fingerprint = ''
-      integer, allocatable :: hashes(:)              !< Two for every group, see scene_fingerprint.
+      type(origin_t) :: origin
       type(group_t), allocatable :: as_read(:)
       type(group_t), allocatable :: groups(:)        !< The same without the effects that `without` takes out.
       character(LENGTH), allocatable :: absent(:)    !< Effects of `without` that the scene did not have.

@@ -26,7 +26,7 @@ contains
 
       allocate (keys, source=keys_of_scenes())
       do i = 1, size(scene%absent)
-         call print_warning(trim(scene%file)//': without = '''//trim(scene%absent(i))// &
+         call print_warning(trim(scene%origin%file)//': without = '''//trim(scene%absent(i))// &
                             ''' of &scene has no effect: the scene does not have it.')
       end do
       do g = 1, size(scene%as_read)
@@ -81,9 +81,16 @@ contains
       else if (index(key%acts, ':flow') > 0 .and. .not. any(model%domain%regions%drainage == COUPLED)) then
          why = ': no &region has drainage = ''coupled'''
       end if
-      if (why /= '') call print_warning(at_line(group%file, line_of(group, key%name))//trim(key%name)//' of &'// &
-                                        trim(group%name)//' has no effect'//why//'.')
+      if (why /= '') call tell(group, trim(key%name), why)
    end subroutine judge
+
+   subroutine tell(group, key, why)
+      type(group_t), intent(in) :: group
+      character(*), intent(in) :: key, why   !< Why: the end of the sentence.
+
+      if (given(group, key)) call print_warning(at_line(group%file, line_of(group, key))//key//' of &'// &
+                                                trim(group%name)//' has no effect'//why//'.')
+   end subroutine tell
 
    !> Keys of a law that act with suction, in a scene without it, and a void ratio that every region replaces.
    subroutine judge_law(scene, model, group)
@@ -97,20 +104,13 @@ contains
       associate (law => model%materials(m)%law)
          if (.not. model%domain%with_c .and. allocated(law%suction_keys)) then
             do i = 1, size(law%suction_keys)
-               call tell_if_given(trim(law%suction_keys(i)), ': the scene has no field p_c')
+               call tell(group, trim(law%suction_keys(i)), ': the scene has no field p_c')
             end do
          end if
          if (law%e_0 > 0.0_wp .and. replaced_everywhere()) &
-            call tell_if_given('e_0', ': every &region of the material gives void_ratio')
+            call tell(group, 'e_0', ': every &region of the material gives void_ratio')
       end associate
    contains
-      subroutine tell_if_given(key, why)
-         character(*), intent(in) :: key, why
-
-         if (given(group, key)) call print_warning(at_line(group%file, line_of(group, key))//key//' of &'// &
-                                                   trim(group%name)//' has no effect'//why//'.')
-      end subroutine tell_if_given
-
       logical function replaced_everywhere() result(everywhere)
          character(LENGTH) :: material
          integer :: i

@@ -96,9 +96,9 @@ contains
          if (fault%code /= 0) return
          allocate (model%domain%region_of(size(model%domain%mesh%t6, 2)), source=0)
          call build('region')
-         if (any(model%domain%region_of == 0) .and. fault%code == 0) call raise(fault, EXIT_GROUP, trim(scene%file)// &
-            ': element '//whole(findloc(model%domain%region_of, 0, dim=1))//' belongs to no &region; add one with '// &
-            'its group, or with group = ''all''.')
+         if (any(model%domain%region_of == 0) .and. fault%code == 0) call raise(fault, EXIT_GROUP, &
+            trim(scene%origin%file)//': element '//whole(findloc(model%domain%region_of, 0, dim=1))//' belongs to '// &
+            'no &region; add one with its group, or with group = ''all''.')
       end subroutine build_regions
    end subroutine build_model
 
@@ -106,16 +106,9 @@ contains
    subroutine begin_model(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model
-      integer :: i
 
-      associate (origin => model%origin, groups => scene%as_read, domain => model%domain)
-         origin%file = scene%file
-         origin%fingerprint = scene%fingerprint
-         origin%hashes = scene%hashes
-         allocate (origin%groups(size(groups)))
-         do i = 1, size(groups)
-            origin%groups(i) = '&'//trim(groups(i)%name)//' in line '//whole(groups(i)%line)
-         end do
+      model%origin = scene%origin
+      associate (domain => model%domain)
          allocate (domain%permeabilities(0), domain%regions(0), domain%bodies(0), domain%bodies_along_r(0))
       end associate
       allocate (model%materials(0), model%curves(0), model%regions(0), model%amplitudes(0), model%stages(0), &

@@ -13,7 +13,6 @@ module scene_keys
    use namelists, only: group_t, MAX_VALUES
    use region_builder, only: build_retention, build_permeability, build_region
    use settings_builder, only: build_settings, build_fluids, build_point
-   use spelling, only: nearest_name
    use stage_builder, only: build_history, build_stage
    use term_registry, only: with_own_groups, declare_keys
    implicit none (type, external)
@@ -22,7 +21,6 @@ module scene_keys
 
    character(12), parameter :: GROUPS(*) = [character(12) :: 'scene', 'mesh', 'fluids', 'retention', 'permeability', &
       'region', 'initial', 'history', 'stage', 'fix', 'load', 'tie', 'plate', 'contact', 'point']
-   character(*), parameter :: LAW_NAME = 'name, for the key material of &region'
 contains
    !> Builds the part of a model that the group of a table says, or lists its keys. Faults: those of its builder. Groups
    !> of terms are built by these.
@@ -92,28 +90,25 @@ contains
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(fault_t), intent(inout) :: fault
       type(key_t), allocatable :: keys(:)
-      character(12), allocatable :: names(:)
       integer :: g
 
-      allocate (keys, source=keys_of_scenes())
+      allocate (keys, source=[keys_of_scenes(), names_of_laws()])
       do g = 1, size(groups)
          if (groups(g)%name == 'scene') call refuse_old_keys(groups(g), fault)
-         if (fault%code /= 0) return
-         if (is_law(groups(g)%name)) then
-            ! The law checks its own keys when it is built.
-            if (.not. given(groups(g), 'name')) call raise(fault, EXIT_INPUT, at_line(groups(g)%file, &
-               groups(g)%line)//'&'//trim(groups(g)%name)//' needs name ('//LAW_NAME//').')
-         else if (.not. any(keys%group == groups(g)%name)) then
-            names = [keys%group, law_names()]
-            call raise(fault, EXIT_INPUT, at_line(groups(g)%file, groups(g)%line)//'there is no group &'// &
-                       trim(groups(g)%name)//'; the nearest is &'// &
-                       trim(names(nearest_name(groups(g)%name, names)))//'.')
-         else
-            call check_group(keys, groups(g), .false., fault)
-         end if
+         if (fault%code == 0) call check_group(keys, groups(g), is_law(groups(g)%name), fault)
          if (fault%code /= 0) return
       end do
    end subroutine check_keys
+
+   !> The key of laws of materials that is none of their own.
+   function names_of_laws() result(keys)
+      type(key_t), allocatable :: keys(:)
+      character(12), allocatable :: laws(:)
+      integer :: g
+
+      allocate (laws, source=law_names())
+      keys = [(key_t(laws(g), 'name', 't', REQUIRED, 0, 0, 'name, for the key material of &region'), g=1, size(laws))]
+   end function names_of_laws
 
    !> Fault EXIT_INPUT: a key that older scenes have, with what says it today.
    subroutine refuse_old_keys(group, fault)
@@ -150,11 +145,10 @@ contains
       character(12), allocatable :: laws(:)
       integer :: g, k
 
-      allocate (all_keys, source=keys_of_scenes())
+      allocate (all_keys, source=[keys_of_scenes(), names_of_laws()])
       allocate (laws, source=law_names())
       do g = 1, size(laws)
-         all_keys = [all_keys, key_t(laws(g), 'name', 't', REQUIRED, 0, 0, LAW_NAME), &
-                     law_keys(laws(g), laws(g))]
+         all_keys = [all_keys, law_keys(laws(g), laws(g))]
       end do
       write (unit, '(a)') '! Every group and key of a scene. Lines that begin with "!" may be left out.'
       write (unit, '(a,i0,a)') '! Groups but &scene, &mesh and &fluids may occur several times; lists hold up to ', &

@@ -3,7 +3,7 @@
 module scene_reader
    use faults, only: fault_t, raise, EXIT_INPUT
    use namelists, only: group_t, read_groups
-   use scene_fingerprint, only: fingerprint_of, hashes_of
+   use scene_fingerprint, only: origin_of
    use scene_keys, only: check_keys
    use effect_switches, only: remove_effects
    use scene_names, only: check_names
@@ -28,9 +28,7 @@ contains
       if (fault%code == 0) call check_names(groups, fault)
       if (fault%code == 0) call check_counts(file, groups, fault)
       if (fault%code /= 0) return
-      scene%file = file
-      scene%fingerprint = fingerprint_of(groups)
-      scene%hashes = hashes_of(groups)
+      scene%origin = origin_of(file, groups)
       call move_alloc(groups, scene%as_read)
       call remove_effects(scene, fault)
    end subroutine read_scene

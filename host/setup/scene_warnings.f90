@@ -8,11 +8,12 @@ module scene_warnings
    use idle_keys, only: warn_of_idle_keys
    use warnings, only: print_warning
    use start_findings, only: tension_t, balance_t
-   use key_schema, only: line_of, get_number
+   use key_schema, only: given, line_of, get_number
    use material_point, only: untested
    use model_types, only: model_t
+   use namelists, only: group_t
    use scene_parts, only: place_of
-   use scene_types, only: scene_t
+   use scene_types, only: scene_t, groups_named, item_of
    use start_look, only: warn_of_start
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole
@@ -58,7 +59,7 @@ contains
       type(tension_t), intent(in) :: tension   !< Of the initial state.
       type(balance_t), intent(in) :: balance   !< Likewise.
 
-      call look_at_sizes(model)
+      call look_at_sizes(scene, model)
       call look_at_slits(model)
       call look_at_units(scene)
       call look_at_regions(model, tension)
@@ -69,16 +70,19 @@ contains
    end subroutine warn_of_scene
 
    !> The unit of length.
-   subroutine look_at_sizes(model)
+   subroutine look_at_sizes(scene, model)
+      type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
       character(*), parameter :: REMEDY = ' scale = 1e-3 of &mesh reads millimetres, scale = 1 metres.'
+      type(group_t), allocatable :: groups(:)
       real(wp) :: size_of
 
+      allocate (groups, source=groups_named(scene, 'mesh'))
       size_of = extent(model%domain%mesh)
-      associate (source => model%mesh_source)
-         if (size_of < SMALL_MESH .or. size_of > merge(LARGE_FILE, LARGE_MESH, source%from_file .and. &
-             .not. source%scaled)) call print_warning(place_of(source)//'the mesh is '//short(size_of)// &
-            ' m large; lengths are in m.'//REMEDY(:merge(len(REMEDY), 0, source%from_file)))
+      associate (from_file => given(groups(1), 'file'))
+         if (size_of < SMALL_MESH .or. size_of > merge(LARGE_FILE, LARGE_MESH, from_file .and. &
+             .not. given(groups(1), 'scale'))) call print_warning(place_of(item_of(groups(1)))//'the mesh is '// &
+            short(size_of)//' m large; lengths are in m.'//REMEDY(:merge(len(REMEDY), 0, from_file)))
       end associate
    end subroutine look_at_sizes
 

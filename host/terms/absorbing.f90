@@ -19,7 +19,7 @@ module absorbing
    use linear_forces, only: linear_forces_t
    use material_point, only: material_t, response_t, batch_report_t
    use model_types, only: model_t, problem_t, action_t, factor_at
-   use name_search, only: mesh_group, history_named
+   use name_search, only: mesh_group, history_named, read_stages
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: domain_t, copy_state, mixture_density, pressures_at, law_of, COUPLED, UNDRAINED
    use scene_parts, only: acts_in, place_of
@@ -81,7 +81,7 @@ contains
       call k%number('v_r', side%velocity(1), -UNBOUNDED, UNBOUNDED, 'velocity along r of the incoming wave [m/s]')
       call k%number('v_z', side%velocity(2), -UNBOUNDED, UNBOUNDED, 'velocity along z of the incoming wave [m/s]')
       call k%text('history', history, 'factor on v_r and v_z', '+v_r|v_z', refers='history')
-      call k%texts('stages', side%stages, 'names of stages; default: all')
+      call read_stages(k, model, side%in_stage)
       if (k%lists) return
       side%scene_item_t = item_of(k%group)
       side%what = '&'//NAME
@@ -432,9 +432,11 @@ contains
       type(side_t), intent(in) :: side
       type(model_t), intent(in) :: model
       integer, intent(in) :: number   !< Of the stage.
+      logical :: acting(size(model%stages))
 
       acts = .false.
-      if (number > 0) acts = any(acting_stages(model, side%action_t) == model%stages(number)%name)
+      acting = acting_stages(model, side%action_t)
+      if (number > 0) acts = acting(number)
    end function acts
 
    !> Sets the dashpots of sides that act in a stage and did not in the one before, and the forces on them.

@@ -8,9 +8,9 @@ module buffer
    use kinds, only: wp
    use linear_system, only: join_unknowns
    use model_types, only: model_t, problem_t
-   use name_search, only: defined_name
+   use name_search, only: defined_name, read_stages
    use texts, only: LENGTH
-   use scene_parts, only: scene_item_t, place_of, acts_in
+   use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
    use springs, only: spring_t
@@ -23,7 +23,7 @@ module buffer
    type, extends(scene_item_t) :: given_t
       character(LENGTH) :: upper = '', lower = ''    !< Names of the plates.
       integer :: plates(2) = 0                       !< Places of the upper and the lower one.
-      character(LENGTH), allocatable :: stages(:)
+      logical, allocatable :: in_stage(:)            !< (stages) Whether it acts in it.
       type(spring_t) :: spring
       integer :: place = 0                           !< Place of the spring in the constraint.
    end type given_t
@@ -53,7 +53,7 @@ contains
       call k%number('clearance', one%spring%clearance, 0.0_wp, UNBOUNDED, &
                     'way of the upper plate to the end of the spring at the start [m]', 'tension=no')
       call k%flag('tension', one%spring%pulls, 'no|yes', 'yes', 'yes: the plates are joined; no: they may part')
-      call k%texts('stages', one%stages, 'names of stages; default: all')
+      call read_stages(k, model, one%in_stage)
       if (k%lists) return
       one%scene_item_t = item_of(k%group)
       one%plates(1) = defined_name('upper', one%upper, model%plates%name, place_of(one), fault)
@@ -61,13 +61,11 @@ contains
       if (fault%code /= 0) return
       if (one%upper == one%lower) call raise(fault, EXIT_INPUT, place_of(one)//'upper and lower are both '''// &
          trim(one%upper)//'''; name the two plates that the buffer lies between.')
-      do i = 1, size(model%stages)
-         if (fault%code /= 0 .or. all(model%plates(one%plates)%group == 0)) exit
-         if (model%stages(i)%zero_displacements .and. acts_in(one%stages, model%stages(i)%name)) &
-            call raise(fault, EXIT_INPUT, place_of(one)//'stage '''//trim(model%stages(i)%name)// &
-                       ''' zeroes its displacements, also of a plate that is joined to a boundary, which would '// &
-                       'change the force of the buffer; name the stages of the buffer.')
-      end do
+      i = findloc(one%in_stage .and. model%stages%zero_displacements, .true., dim=1)
+      if (i > 0 .and. any(model%plates(one%plates)%group > 0) .and. fault%code == 0) &
+         call raise(fault, EXIT_INPUT, place_of(one)//'stage '''//trim(model%stages(i)%name)// &
+                    ''' zeroes its displacements, also of a plate that is joined to a boundary, which would '// &
+                    'change the force of the buffer; name the stages of the buffer.')
       if (.not. allocated(self%all)) allocate (self%all(0))
       self%all = [self%all, one]
       self%wanted = .true.
@@ -101,7 +99,7 @@ contains
 
       do i = 1, size(self%all)
          associate (one => self%all(i))
-            problem%constraint%springs(one%place)%acts = acts_in(one%stages, problem%stage%name)
+            problem%constraint%springs(one%place)%acts = one%in_stage(problem%at%stage)
          end associate
       end do
    end subroutine begin_stage

@@ -11,7 +11,7 @@ module contact_drainage
    use contact_interfaces, only: contacts_t
    use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
-   use scene_parts, only: acts_in, place_of, LOAD_RAIN
+   use scene_parts, only: place_of, LOAD_RAIN
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
    use unknown_fields, only: DISPLACEMENTS
@@ -38,7 +38,7 @@ contains
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
       logical :: follows
-      integer :: f, s
+      integer :: f
 
       follows = .false.
       call k%flag('drainage', follows, 'fixed|state', 'state', &
@@ -60,8 +60,7 @@ contains
       end do
       do f = 1, size(model%loads)
          if (model%loads(f)%kind /= LOAD_RAIN .or. fault%code /= 0) cycle
-         if (.not. any([(acts_in(model%loads(f)%stages, model%stages(s)%name) .and. &
-                         acts_in(model%contacts(number)%stages, model%stages(s)%name), s=1, size(model%stages))])) cycle
+         if (.not. any(model%loads(f)%in_stage .and. model%contacts(number)%in_stage)) cycle
          if (share_an_edge(model, model%contacts(number)%slave, model%loads(f)%group)) call raise(fault, EXIT_INPUT, &
             place_of(model%loads(f))//'rain on '''//trim(model%loads(f)%group_name)//''' would fall on nodes in '// &
             'contact too, which drainage = ''state'' of the contact '//trim(model%contacts(number)%name)// &

@@ -5,7 +5,7 @@
 module drained_regions
    use kinds, only: wp
    use faults, only: fault_t
-   use given_pressures, only: pressures_at_start
+   use given_pressures, only: pressures_at_start, set_middles
    use model_types, only: model_t, problem_t
    use porous_domain, only: domain_t, is_present, DRAINED, UNDRAINED
    use scene_term, only: scene_term_t
@@ -32,22 +32,17 @@ contains
    !> Pressures that are no unknowns. docs/theory/host.md section 3.5. Sets `given` of the domain [kPa].
    subroutine give_pressures(model)
       type(model_t), intent(inout) :: model
+      real(wp) :: p(2, size(model%domain%mesh%x, 2))
       integer :: e
 
       associate (domain => model%domain)
-         domain%given = pressures_at_start(model)
-         do e = 1, size(domain%region_of)
-            associate (nodes => domain%mesh%t6(:, e))
-               ! The middle of a side lies between the ends where pressures are linear.
-               if (domain%n_p == 3) domain%given(:, nodes(4:6)) = &
-                  0.5_wp*(domain%given(:, nodes(1:3)) + domain%given(:, nodes([2, 3, 1])))
-            end associate
-         end do
+         p = pressures_at_start(model)
+         call set_middles(domain, p)
          do e = 1, size(domain%region_of)
             ! The mean of a quadratic field over a triangle is that of the middles of its sides.
-            if (domain%center(e) > 0) &
-               domain%given(:, domain%center(e)) = sum(domain%given(:, domain%mesh%t6(4:6, e)), dim=2)/3
+            if (domain%center(e) > 0) p(:, domain%center(e)) = sum(p(:, domain%mesh%t6(4:6, e)), dim=2)/3
          end do
+         domain%given = p
       end associate
    end subroutine give_pressures
 

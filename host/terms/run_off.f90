@@ -3,14 +3,13 @@
 !> within Newton's method (limited_pressures). docs/theory/host.md section 7.7.
 module run_off
    use kinds, only: wp
-   use boundary_conditions, only: acts, value_of
-   use boundary_loads, only: force_of
+   use boundary_conditions, only: acts, force_of
    use faults, only: fault_t, raise, EXIT_INPUT
    use generalised_alpha, only: has_rates
    use key_table, only: key_table_t
-   use model_types, only: model_t, problem_t, factor_at, gravity_at, load_t
+   use model_types, only: model_t, problem_t, factor_at, factors_of, gravity_at, value_at, load_t
    use prescribed_values, only: is_released
-   use scene_parts, only: acts_in, place_of, LOAD_RAIN
+   use scene_parts, only: place_of, LOAD_RAIN
    use scene_term, only: scene_term_t
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
@@ -80,9 +79,7 @@ contains
       type(fault_t), intent(inout) :: fault
       real(wp) :: least
 
-      least = load%value
-      if (load%amplitude > 0) least = min(load%value*minval(model%amplitudes(load%amplitude)%values), &
-                                          load%value*maxval(model%amplitudes(load%amplitude)%values))
+      least = minval(load%value*factors_of(model, load%amplitude))
       if (least < 0.0_wp .or. abs(load%value_slope) > 0.0_wp) then
          call raise(fault, EXIT_INPUT, place_of(load)//'rain has a value times its history of 0 or more, and no '// &
                     'value_slope; here it becomes '//short(least)//' m/s. For evaporation give a kind = ''water'' '// &
@@ -116,7 +113,7 @@ contains
       rain = 0.0_wp
       do i = 1, size(problem%model%loads)
          associate (one => problem%model%loads(i))
-            if (one%kind == LOAD_RAIN .and. acts_in(one%stages, problem%stage%name)) &
+            if (one%kind == LOAD_RAIN .and. one%in_stage(problem%at%stage)) &
                rain = rain + force_of(one, factor_at(problem%model, one%amplitude, time))
          end associate
       end do
@@ -132,20 +129,20 @@ contains
       integer :: i, k
 
       if (.not. has_rates(problem%stage%kind)) return
-      associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%stage)
+      associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%at%stage)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i), nodes => groups(model%fixes(i)%group)%nodes)
                if (.not. fix%limits .or. .not. acts(fix, problem, time)) cycle
                do k = 1, size(nodes)
                   ! The water outside, where it stands, else the air.
                   if (.not. is_released(problem%constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, &
-                     value_of(fix, model%domain%mesh%x(2, nodes(k)), factor_at(model, fix%amplitude, time))), fix%group)
+                     value_at(fix, model%domain%mesh%x(2, nodes(k)))*factor_at(model, fix%amplitude, time)), fix%group)
                end do
             end associate
          end do
          do i = 1, size(model%loads)
             associate (load => model%loads(i), nodes => groups(model%loads(i)%group)%nodes)
-               if (load%kind /= LOAD_RAIN .or. .not. acts_in(load%stages, stage%name)) cycle
+               if (load%kind /= LOAD_RAIN .or. .not. load%in_stage(stage)) cycle
                do k = 1, size(nodes)
                   call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*self%ponding(i), load%group)
                end do

@@ -4,18 +4,18 @@
 module staging
    use kinds, only: wp
    use acting_places, only: nodes_of_ground
-   use carried_slopes, only: slopes_t
    use degrees_of_freedom, only: dofs_t
-   use element_equations, only: element_t, block_t, points_t, update_block, add_element, element_size
+   use equation_assembly, only: assembly_t, make_assembly, assemble
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise, EXIT_INPUT
-   use generalised_alpha, only: scheme_t, make_scheme, STATIC
+   use generalised_alpha, only: make_scheme, STATIC
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t, gravity_at, share_over
+   use name_search, only: read_stages
    use porous_domain, only: model_state_t, copy_state
-   use scene_parts, only: acts_in, place_of
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
-   use texts, only: whole, LENGTH
+   use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -35,17 +35,15 @@ contains
       integer, intent(in) :: number
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
-      character(LENGTH), allocatable :: stages(:)
+      logical, allocatable :: in_stage(:)
       integer :: s
 
-      call k%texts('stages', stages, 'stages in which it is part of the ground; default: all')
-      if (k%lists) return
-      if (size(stages) == 0) return
+      call read_stages(k, model, in_stage, 'stages in which it is part of the ground; default: all')
+      if (k%lists .or. .not. k%given('stages')) return
       if (.not. allocated(model%ground)) &
          allocate (model%ground(size(model%domain%region_of), size(model%stages)), source=.true.)
       do s = 1, size(model%stages)
-         if (.not. acts_in(stages, model%stages(s)%name)) &
-            model%ground(:, s) = model%ground(:, s) .and. model%domain%region_of /= number
+         if (.not. in_stage(s)) model%ground(:, s) = model%ground(:, s) .and. model%domain%region_of /= number
       end do
    end subroutine build_group
 
@@ -129,12 +127,8 @@ contains
       type(problem_t), intent(in) :: problem
       type(fault_t), intent(inout) :: fault
       type(model_state_t) :: at_start, same
-      type(slopes_t) :: slopes
-      type(block_t) :: block
-      type(points_t) :: points
-      type(element_t) :: out
-      type(scheme_t) :: scheme
-      integer :: e, i, at
+      type(assembly_t) :: assembly
+      integer :: i
 
       self%held_up = [(0.0_wp, i=1, problem%dofs%n)]
       if (all(stays)) return
@@ -142,29 +136,18 @@ contains
       at_start%x = problem%at%x_start
       at_start%v = 0.0_wp
       at_start%a = 0.0_wp
+      at_start%present = .not. stays
       at_start%joins = .false.
       at_start%gravity = gravity_at(problem%model, problem%at%t_start)
       same = at_start
       ! Laws that change with time are those of the start of the stage.
       if (allocated(problem%next%laws)) same%laws = problem%next%laws
-      scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
-      do e = 1, size(stays)
-         if (stays(e)) cycle
-         block%first = e
-         block%last = e
-         call update_block(problem%domain, scheme, at_start, same, .false., slopes, block, points)
-         if (block%report%code /= 0) then
-            call raise(fault, EXIT_MATERIAL, 'The material of element '//whole(e)//', which leaves, refuses its '// &
-                       'own state at rest.')
-            return
-         end if
-         call add_element(problem%domain, e, scheme, block, points, at_start, same, .false., out)
-         do i = 1, element_size(problem%domain, e)
-            at = problem%dofs%element(i, e)
-            if (at == 0) cycle
-            if (problem%dofs%field(at) <= DISPLACEMENTS) self%held_up(at) = self%held_up(at) + out%r(i)
-         end do
-      end do
+      call make_assembly(problem%domain, problem%dofs, problem%pattern, assembly)
+      call assemble(problem%domain, problem%dofs, problem%pattern, make_scheme(STATIC, 1.0_wp, 1.0_wp), at_start, &
+                    same, .false., assembly)
+      if (assembly%bad_element > 0) call raise(fault, EXIT_MATERIAL, 'The material of element '// &
+         whole(assembly%bad_element)//', which leaves, refuses its own state at rest.')
+      where (problem%dofs%field <= DISPLACEMENTS) self%held_up = assembly%residual
    end subroutine find_held_up
 
    !> Unknowns that elements have, but none that is present.

@@ -6,7 +6,7 @@ module strength
    use key_schema, only: REQUIRED
    use key_table, only: key_table_t
    use material_point, only: material_t
-   use model_types, only: model_t, problem_t, factor_at
+   use model_types, only: model_t, problem_t, factor_at, factors_of
    use name_search, only: defined_name
    use porous_domain, only: model_state_t
    use scene_parts, only: scene_item_t, place_of
@@ -103,7 +103,7 @@ contains
                     trim(s%material_name)//''' cannot follow a history: '//trim(text)//'.')
          return
       end if
-      factors = [minval(model%amplitudes(s%amplitude)%values), maxval(model%amplitudes(s%amplitude)%values)]
+      factors = factors_of(model, s%amplitude)
       do i = 1, size(factors)
          allocate (changed, source=law)
          call changed%change_over_step([s%place], [1.0_wp], factors(i:i), text)

@@ -8,9 +8,9 @@ module ground_spring
    use key_table, only: key_table_t
    use linear_forces, only: linear_forces_t
    use model_types, only: model_t, problem_t, action_t
-   use name_search, only: mesh_group
+   use name_search, only: mesh_group, read_stages
    use texts, only: LENGTH
-   use scene_parts, only: acts_in, place_of
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
    use unknown_fields, only: DISPLACEMENTS
@@ -45,7 +45,7 @@ contains
       call k%text('group', boundary, 'nodes that the springs hold', REQUIRED)
       call k%number('stiffness', spring%stiffness, 0.0_wp, UNBOUNDED, 'force on a node over its displacement [kN/m]', &
                     REQUIRED)
-      call k%texts('stages', spring%stages, 'names of stages; default: all')
+      call read_stages(k, model, spring%in_stage)
       if (k%lists) return
       spring%scene_item_t = item_of(k%group)
       spring%what = '&'//NAME
@@ -87,8 +87,7 @@ contains
       integer :: i
 
       do i = 1, size(self%springs)
-         problem%constraint%linear(self%springs(i)%place)%acts = &
-            acts_in(self%springs(i)%stages, problem%stage%name)
+         problem%constraint%linear(self%springs(i)%place)%acts = self%springs(i)%in_stage(problem%at%stage)
       end do
    end subroutine before_step
 end module ground_spring
