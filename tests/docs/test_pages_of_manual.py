@@ -154,6 +154,9 @@ def test_there_are_pages_to_look_at():
     rule("links lead to files and headings that there are", [
         f"{name}: {what}" for name, text in texts.items() if name != "CHANGELOG.md"
         for what in pages.broken(name, text, root, anchors_of)])
+    rule("headings are short: one that was wrapped with its paragraph is none", [
+        f"{name}: {line}" for name, text in texts.items() for line in pages.FENCE.sub("", text).split("\n")
+        if re.match("#+ ", line) and len(line) > 100])
     rule("commands have options that their programs know", [
         f"{name}: {what}" for name, text in texts.items() for what in unknown_options(text)])
     rule("code is of a language that the site can colour, or of none", [

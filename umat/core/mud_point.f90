@@ -20,7 +20,7 @@ module mud_point
    use mud_status, only: fail, MUD_OK, MUD_VOID_RATIO_LIMIT, ON_VOID_RATIO
    use mud_stiff_direction, only: make_implicit
    use mud_substepping, only: stepping_t, begin_phase, try_substep, end_substep, end_phase
-   use mud_tensor, only: LANES, all_within
+   use mud_tensor, only: DIRECTIONS, all_within
    use mud_transitions, only: take_last_rate, begin_substep
    implicit none (type, external)
    private
@@ -104,10 +104,10 @@ contains
    !> Whether derivatives of the stress are slopes: those of explicit substeps at the limit of their stability grow from
    !> one to the next, up to 1e108 kPa, while error control keeps the stress. docs/theory/integration.md section 5.3.
    pure logical function is_slope(y, stiffness)
-      real(wp), intent(in) :: y(LANES, 6) !< By strain [kPa], by suction [-], and along the idle direction.
+      real(wp), intent(in) :: y(DIRECTIONS, 6) !< By strain [kPa], by suction [-], and along the idle direction.
       real(wp), intent(in) :: stiffness   !< Largest elastic one [kPa].
       real(wp), parameter :: STEEPEST = 1.0e4_wp   !< The stress of an increment changes the stiffness by less.
-      real(wp) :: largest(LANES, 6)
+      real(wp) :: largest(DIRECTIONS, 6)
 
       largest(1:6, :) = STEEPEST*stiffness
       largest(7, :) = STEEPEST

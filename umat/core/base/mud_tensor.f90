@@ -8,19 +8,19 @@ module mud_tensor
    private
    public :: IDENTITY, SHEAR_WEIGHT, ddot, trace, deviator, norm, square, is_finite, within, all_finite, all_within, &
              all_zero, &
-             outer_add, outer_sum, rotate, LANES, contractions, tensors_t, contracted, traces, ZERO_TENSORS, &
+             outer_add, outer_sum, rotate, DIRECTIONS, contractions, tensors_t, contracted, traces, ZERO_TENSORS, &
              UNIT_STRAINS, ANY_TENSORS, strain_directions
 
    !> Directions of a derivative that are worked on side by side: six strains, the suction and an idle one, for an even
    !> number the compiler takes two at a time.
-   integer, parameter :: LANES = 8
+   integer, parameter :: DIRECTIONS = 8
    integer, parameter :: ZERO_TENSORS = 0   !< All are zero.
    integer, parameter :: UNIT_STRAINS = 1   !< The first six are unit engineering strains, the others zero.
    integer, parameter :: ANY_TENSORS = 2    !< Nothing is known of them.
 
    !> Tensors side by side, such as the changes of a strain along some directions, and what spares a contraction.
    type :: tensors_t
-      real(wp) :: of(LANES, 6)
+      real(wp) :: of(DIRECTIONS, 6)
       integer :: kind
    end type tensors_t
 
@@ -53,8 +53,8 @@ contains
    !> Contractions of tensors side by side with one. Number i is tensors(i, :) : a, in the unit of the tensors times
    !> that of a.
    pure function contractions(tensors, a) result(c)
-      real(wp), intent(in) :: tensors(LANES, 6), a(6)
-      real(wp) :: c(LANES)
+      real(wp), intent(in) :: tensors(DIRECTIONS, 6), a(6)
+      real(wp) :: c(DIRECTIONS)
 
       c = a(1)*tensors(:, 1) + a(2)*tensors(:, 2) + a(3)*tensors(:, 3) &
           + (2.0_wp*a(4))*tensors(:, 4) + (2.0_wp*a(5))*tensors(:, 5) + (2.0_wp*a(6))*tensors(:, 6)
@@ -64,7 +64,7 @@ contains
    pure function contracted(tensors, a) result(c)
       type(tensors_t), intent(in) :: tensors
       real(wp), intent(in) :: a(6)
-      real(wp) :: c(LANES)
+      real(wp) :: c(DIRECTIONS)
 
       select case (tensors%kind)
       case (ZERO_TENSORS)
@@ -80,7 +80,7 @@ contains
    !> Traces of tensors side by side, in their unit.
    pure function traces(tensors) result(c)
       type(tensors_t), intent(in) :: tensors
-      real(wp) :: c(LANES)
+      real(wp) :: c(DIRECTIONS)
 
       select case (tensors%kind)
       case (ZERO_TENSORS)

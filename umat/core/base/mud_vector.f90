@@ -11,5 +11,5 @@ module mud_vector
    integer, parameter :: N_OPTIONS = 3           !< Numbers of options; each has its places in its own file.
    integer, parameter :: Y_OPTIONS = Y_SHEAR + 1   !< the first of them
    integer, parameter :: NY = Y_SHEAR + N_OPTIONS
-   integer, parameter :: WIDTH = 8               !< Vectors that umat/lanes integrates side by side.
+   integer, parameter :: WIDTH = 8               !< Points that umat/lanes integrates side by side.
 end module mud_vector

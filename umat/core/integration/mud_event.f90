@@ -10,7 +10,7 @@ module mud_event
    use mud_rate, only: rate_t
    use mud_rates, only: MODE_ORDINARY
    use mud_state, only: counters_t
-   use mud_tensor, only: LANES, deviator
+   use mud_tensor, only: DIRECTIONS, deviator
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
@@ -80,9 +80,10 @@ module mud_event
 
    !> Changes where an event is, along directions side by side; what its function does not change with is not set.
    type :: event_changes_t
-      real(wp) :: y(LANES, NY), rates(LANES, NY)   !< changes of the integrated vector, of its rates
-      real(wp), dimension(LANES, 6) :: r, r_in, n, strain   !< changes of stress ratio, memory, direction, strain step
-      real(wp), dimension(LANES) :: e, d_pc, psi, excess, mechanism, drive   !< changes of void ratio, ...
+      real(wp) :: y(DIRECTIONS, NY), rates(DIRECTIONS, NY)   !< changes of the integrated vector, of its rates
+      !> changes of stress ratio, memory, direction, strain step
+      real(wp), dimension(DIRECTIONS, 6) :: r, r_in, n, strain
+      real(wp), dimension(DIRECTIONS) :: e, d_pc, psi, excess, mechanism, drive   !< changes of void ratio, ...
    end type event_changes_t
 
    logical, parameter, dimension(MODE_ORDINARY:MODE_HELD) :: NOBODY = [.false., .false., .false.], &

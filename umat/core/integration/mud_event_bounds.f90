@@ -7,7 +7,7 @@ module mud_event_bounds
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
@@ -35,7 +35,7 @@ contains
    !> Changes of the excess [-].
    pure function slopes_of_bounds(c) result(slopes)
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
 
       slopes = c%excess
    end function slopes_of_bounds

@@ -11,7 +11,7 @@ module mud_event_closes
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_state, only: counters_t
-   use mud_tensor, only: LANES, ddot
+   use mud_tensor, only: DIRECTIONS, ddot
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
@@ -88,11 +88,11 @@ contains
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: e
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
       real(wp) :: strain(6)
       integer :: j
 
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          strain = c%strain(j, :)
          slopes(j) = change_of_closing_rate(inc, openings, w, e, &
                                             (c%rates(j, 1) + c%rates(j, 2) + c%rates(j, 3))/3.0_wp, c%e(j), strain, &

@@ -9,7 +9,7 @@ module mud_event_dilates
    use mud_options, only: changes_of_flow
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -40,7 +40,7 @@ contains
    pure function slopes_of_dilation(w, c) result(slopes)
       type(rate_t), intent(in) :: w
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
 
       slopes = changes_of_flow(w%d, c%rates)
    end function slopes_of_dilation

@@ -5,7 +5,7 @@ module mud_event_forwards
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_rate, only: rate_t
-   use mud_tensor, only: LANES, contractions, ddot
+   use mud_tensor, only: DIRECTIONS, contractions, ddot
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -37,7 +37,7 @@ contains
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: r(6)
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
 
       slopes = contractions(c%rates(:, 1:6), w%n) + contractions(c%n, w%d_sigma - w%d_p*r) &
                - w%d_p*contractions(c%r, w%n) - (w%r_n/3.0_wp)*(c%rates(:, 1) + c%rates(:, 2) + c%rates(:, 3))

@@ -7,7 +7,7 @@ module mud_event_mechanism
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -41,7 +41,7 @@ contains
    !> Changes of the drive [-].
    pure function slopes_of_mechanism(c) result(slopes)
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
 
       slopes = c%mechanism
    end function slopes_of_mechanism

@@ -5,7 +5,7 @@ module mud_event_opens
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rate, only: rate_t
-   use mud_tensor, only: LANES, trace
+   use mud_tensor, only: DIRECTIONS, trace
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -34,7 +34,7 @@ contains
    !> Changes of the height of p' above p_min with those of the stress, times 3 p_min. In the unit of p_atm.
    pure function slopes_of_opening(c) result(slopes)
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
 
       slopes = c%y(:, 1) + c%y(:, 2) + c%y(:, 3)
    end function slopes_of_opening

@@ -8,7 +8,7 @@ module mud_event_return
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
    use mud_return_point, only: beyond_target, target_limit, is_limited
-   use mud_tensor, only: LANES, contractions
+   use mud_tensor, only: DIRECTIONS, contractions
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
@@ -35,7 +35,7 @@ contains
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: psi
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
       real(wp) :: m_b
 
       m_b = bounding_ratio(par%critical, psi)

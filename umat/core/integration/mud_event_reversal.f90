@@ -10,7 +10,7 @@ module mud_event_reversal
    use mud_rate, only: rate_t
    use mud_state, only: counters_t
    use mud_substep, only: LARGEST_FACTOR, cubic_point
-   use mud_tensor, only: LANES, contractions, ddot
+   use mud_tensor, only: DIRECTIONS, contractions, ddot
    use mud_trial, only: trial_t, take_step
    use mud_vector, only: NY
    implicit none (type, external)
@@ -121,7 +121,7 @@ contains
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: r(6)
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
 
       if (jumps(par, trial, w)) then
          slopes = c%drive

@@ -27,7 +27,7 @@ module mud_event_table
    use mud_rates, only: stress_ratio
    use mud_return_point, only: projection_on_chord
    use mud_state, only: state_t, counters_t
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
@@ -160,7 +160,7 @@ contains
       real(wp), intent(in) :: time
       type(rate_t), intent(in) :: w            !< where the event depends on a rate
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
       real(wp) :: p, r(6)
 
       call stress_ratio(par, trial%y(1:6), p, r)

@@ -7,7 +7,7 @@ module mud_event_yield
    use mud_mechanism, only: reaches_memory, short_of_memory, forget_compression
    use mud_params, only: params_t
    use mud_state, only: state_t
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -39,7 +39,7 @@ contains
    !> Changes of the margin to the memory [-].
    pure function slopes_of_yield(c) result(slopes)
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(LANES)
+      real(wp) :: slopes(DIRECTIONS)
 
       slopes = c%mechanism
    end function slopes_of_yield

@@ -45,8 +45,8 @@ contains
    end subroutine look_for_stiffness
 
    !> The explicit pair of the coming attempt with the scheme automatic: modified Euler if one substep of it reaches the
-   !> end, otherwise the third order. A linearly implicit substep stays what it is. rest and h as in choose_stepping, h
-   !> being a size of third order. docs/theory/integration.md section 2.
+   !> end, otherwise the third order. A linearly implicit substep stays what it is. rest and h are those of
+   !> look_for_stiffness, h being a size of third order. docs/theory/integration.md section 2.
    pure subroutine choose_order(par, rest, h, share, inc, trial)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: rest, h

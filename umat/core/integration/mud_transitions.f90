@@ -42,51 +42,18 @@ contains
    pure subroutine begin_substep(par, it)
       type(params_t), intent(in) :: par
       type(integration_t), intent(inout) :: it
-      real(wp) :: p, r(6), outwards
+      real(wp) :: p, r(6)
       logical :: dragged
 
-      it%trial%time = it%reached
-      it%trial%y0(1:6) = it%state%sigma
-      it%trial%y0(Y_Z:Y_Z_END) = it%state%z
-      it%trial%y0(Y_SHEAR) = 0.0_wp
-      call begin_numbers(it%state, it%trial%y0)
-      it%trial%e = it%state%e
-      call begin_mechanism(par, it%state, it%inc, it%trial, it%known)
-      it%jump = JUMP_NONE
-      it%n_jumps = 0
-      it%trial%watched = 0
-      it%trial%advanced = .false.
       dragged = it%trial%drifts
-      it%trial%drifts = .false.
+      call take_state(par, it)
       call stress_ratio(par, it%state%sigma, p, r)
-      it%trial%mode = MODE_ORDINARY
-      call take_memory(par, it)
       if (it%state%open) then
          call try_to_close(par, r, it)
          return
       end if
-
-      if (it%inc%inside .and. .not. it%trial%pressed) then
-         it%trial%mode = MODE_ELASTIC
-         call first_rate(par, it)
-         outwards = (2.0_wp*it%trial%w(1)%g)*ddot(it%inc%d_strain, r) - (it%trial%w(1)%k*it%inc%d_v)*ddot(r, r)
-         if (outwards > 0.0_wp) it%trial%pressed = &
-            excess(par%critical, psi_at(par, it%inc, it%trial%time, p), r) >= LARGEST_EXCESS
-         if (it%trial%pressed) it%trial%mode = MODE_ORDINARY
-      end if
-
-      it%trial%advanced = .false.
-      if (it%trial%mode == MODE_ORDINARY) then
-         if (it%known) then
-            if (dragged) call rate_at_beginning(par, it)
-         else
-            call first_rate(par, it)
-         end if
-         call apply_memory_rule(par, r, it)
-         it%trial%advanced = it%state%memory%x_running > 0.0_wp .or. it%trial%w(1)%x > 0.0_wp .or. &
-                             it%event == EVENT_FORWARDS
-      end if
-
+      if (it%inc%inside .and. .not. it%trial%pressed) call begin_elastic(par, p, r, it)
+      if (it%trial%mode == MODE_ORDINARY) call begin_ordinary(par, r, dragged, it)
       if (mechanism_ceases(par, it%inc, it%trial%time, it%trial%w(1))) then
          it%inc%rests = .true.
          call first_rate(par, it)
@@ -101,6 +68,60 @@ contains
          it%trial%transient%known = .false.
       end if
    end subroutine begin_substep
+
+   !> The trial begins where the state is, as an ordinary substep without a jump.
+   pure subroutine take_state(par, it)
+      type(params_t), intent(in) :: par
+      type(integration_t), intent(inout) :: it
+
+      it%trial%time = it%reached
+      it%trial%y0(1:6) = it%state%sigma
+      it%trial%y0(Y_Z:Y_Z_END) = it%state%z
+      it%trial%y0(Y_SHEAR) = 0.0_wp
+      call begin_numbers(it%state, it%trial%y0)
+      it%trial%e = it%state%e
+      call begin_mechanism(par, it%state, it%inc, it%trial, it%known)
+      it%jump = JUMP_NONE
+      it%n_jumps = 0
+      it%trial%watched = 0
+      it%trial%advanced = .false.
+      it%trial%drifts = .false.
+      it%trial%mode = MODE_ORDINARY
+      call take_memory(par, it)
+   end subroutine take_state
+
+   !> Inside the elastic domain a substep is elastic, unless it would leave the bounding surface: from there on the
+   !> phase is ordinary.
+   pure subroutine begin_elastic(par, p, r, it)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: p, r(6)
+      type(integration_t), intent(inout) :: it
+      real(wp) :: outwards
+
+      it%trial%mode = MODE_ELASTIC
+      call first_rate(par, it)
+      outwards = (2.0_wp*it%trial%w(1)%g)*ddot(it%inc%d_strain, r) - (it%trial%w(1)%k*it%inc%d_v)*ddot(r, r)
+      if (outwards > 0.0_wp) it%trial%pressed = &
+         excess(par%critical, psi_at(par, it%inc, it%trial%time, p), r) >= LARGEST_EXCESS
+      if (it%trial%pressed) it%trial%mode = MODE_ORDINARY
+   end subroutine begin_elastic
+
+   !> The first rate of an ordinary substep, of the memory that the rule leaves there.
+   pure subroutine begin_ordinary(par, r, dragged, it)
+      type(params_t), intent(in) :: par
+      real(wp), intent(in) :: r(6)
+      logical, intent(in) :: dragged   !< The process took its beginning along in the substep before.
+      type(integration_t), intent(inout) :: it
+
+      if (.not. it%known) then
+         call first_rate(par, it)
+      else if (dragged) then
+         call rate_at_beginning(par, it)
+      end if
+      call apply_memory_rule(par, r, it)
+      it%trial%advanced = it%state%memory%x_running > 0.0_wp .or. it%trial%w(1)%x > 0.0_wp .or. &
+                          it%event == EVENT_FORWARDS
+   end subroutine begin_ordinary
 
    !> The trial begins with the memory that the point has.
    pure subroutine take_memory(par, it)

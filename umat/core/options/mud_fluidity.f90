@@ -7,7 +7,7 @@
 module mud_fluidity
    use mud_kinds, only: wp
    use mud_params, only: fluidity_law_t
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_vector, only: NY, Y_OPTIONS
    implicit none (type, external)
    private
@@ -54,8 +54,8 @@ contains
    pure function growth_changes(par, fluidity, l, dl, dp, y) result(changes)
       type(fluidity_law_t), intent(in) :: par
       type(fluidity_t), intent(in) :: fluidity
-      real(wp), intent(in) :: l, dl(LANES), dp(LANES), y(LANES, NY)
-      real(wp) :: changes(LANES), slopes(2)
+      real(wp), intent(in) :: l, dl(DIRECTIONS), dp(DIRECTIONS), y(DIRECTIONS, NY)
+      real(wp) :: changes(DIRECTIONS), slopes(2)
 
       slopes = par%c_ell*[fluidity%weight_by_p*(1.0_wp - fluidity%ell/par%ell_max), -fluidity%weight/par%ell_max]
       changes = growth(par, fluidity)*dl + l*(slopes(1)*dp + slopes(2)*y(:, Y_FLUIDITY))
@@ -74,8 +74,8 @@ contains
    !> and d_v.
    pure function recovery_changes(par, d_v, ell, y, dv) result(changes)
       type(fluidity_law_t), intent(in) :: par
-      real(wp), intent(in) :: d_v, ell, y(LANES, NY), dv(LANES)
-      real(wp) :: changes(LANES)
+      real(wp), intent(in) :: d_v, ell, y(DIRECTIONS, NY), dv(DIRECTIONS)
+      real(wp) :: changes(DIRECTIONS)
 
       changes = 0.0_wp
       if (d_v > 0.0_wp) changes = recovery(par, d_v)*y(:, Y_FLUIDITY) + (par%r_ell*ell)*dv
@@ -92,8 +92,8 @@ contains
    !> Changes of that with the integrated vector, with h and d_v [-].
    pure function recovered_changes(par, d_v, h, ell, y, dh, dv) result(changes)
       type(fluidity_law_t), intent(in) :: par
-      real(wp), intent(in) :: d_v, h, ell, y(LANES, NY), dh(LANES), dv(LANES)
-      real(wp) :: changes(LANES)
+      real(wp), intent(in) :: d_v, h, ell, y(DIRECTIONS, NY), dh(DIRECTIONS), dv(DIRECTIONS)
+      real(wp) :: changes(DIRECTIONS)
 
       changes = exp(-h*recovery(par, d_v))*(y(:, Y_FLUIDITY) - (ell*recovery(par, d_v))*dh)
       if (d_v > 0.0_wp) changes = changes - (ell*h*par%r_ell*exp(-h*recovery(par, d_v)))*dv

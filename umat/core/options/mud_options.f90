@@ -9,7 +9,7 @@ module mud_options
    use mud_preloading, only: preloading_t, preloading_of, preload, log_contraction, note_contraction, &
       contraction_error, jump_of_contraction, changes_of_contraction, NO_CONTRACTION, Y_LOG_CHI, Y_CONTRACTION
    use mud_state, only: state_t, memory_t
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_vector, only: NY, Y_OPTIONS, Y_SHEAR
    implicit none (type, external)
    private
@@ -34,8 +34,8 @@ module mud_options
 
    !> Derivatives of the numbers of the memory beside the vector.
    type :: past_changes_t
-      real(wp) :: own(LANES)    !< derivatives of the contraction of the present process
-      real(wp) :: log_0(LANES)  !< derivatives of ln chi' where the substep began
+      real(wp) :: own(DIRECTIONS)    !< derivatives of the contraction of the present process
+      real(wp) :: log_0(DIRECTIONS)  !< derivatives of ln chi' where the substep began
    end type past_changes_t
 contains
    !> Number of entries of the integrated vector that may change: those of options that are off stand last.
@@ -127,7 +127,7 @@ contains
 
    !> A substep begins: its derivatives are those of its own changes.
    pure subroutine begin_past_changes(y, past)
-      real(wp), intent(inout) :: y(LANES, NY)
+      real(wp), intent(inout) :: y(DIRECTIONS, NY)
       type(past_changes_t), intent(inout) :: past
 
       past%log_0 = y(:, Y_LOG_CHI)
@@ -137,7 +137,7 @@ contains
    !> Derivatives of what a substep from y0 to y1 leaves; own is that of take_past.
    pure subroutine keep_past_changes(par, y0, y1, own, y, past)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: y0(NY), y1(NY), own, y(LANES, NY)
+      real(wp), intent(in) :: y0(NY), y1(NY), own, y(DIRECTIONS, NY)
       type(past_changes_t), intent(inout) :: past
 
       if (par%preloading) past%own = changes_of_contraction(y0(Y_LOG_CHI), y1(Y_LOG_CHI), own, past%own, past%log_0, y)
@@ -148,7 +148,7 @@ contains
       type(params_t), intent(in) :: par
       logical, intent(in) :: begins, resumes
       type(memory_t), intent(in) :: before, after
-      real(wp), intent(inout) :: y(LANES, NY)
+      real(wp), intent(inout) :: y(DIRECTIONS, NY)
       type(past_changes_t), intent(inout) :: past
 
       if (par%preloading) call jump_of_contraction(begins, resumes, before, after, past%own, y(:, Y_LOG_CHI))
@@ -230,8 +230,8 @@ contains
 
    !> Changes of ln q at constant x with those of ln(M^d/(M^b b_0)) and the vector [-].
    pure function changes_of_bend(of_terms, y) result(changes)
-      real(wp), intent(in) :: of_terms(LANES), y(LANES, NY)
-      real(wp) :: changes(LANES)
+      real(wp), intent(in) :: of_terms(DIRECTIONS), y(DIRECTIONS, NY)
+      real(wp) :: changes(DIRECTIONS)
 
       changes = of_terms - y(:, Y_LOG_CHI)
    end function changes_of_bend
@@ -246,8 +246,8 @@ contains
    !> Changes of ln of the factor on A_0 and b_0, where they are lowered, with p' [kPa] and the vector [-].
    pure function changes_of_softening(own, dp, y) result(changes)
       type(of_options_t), intent(in) :: own
-      real(wp), intent(in) :: dp(LANES), y(LANES, NY)
-      real(wp) :: changes(LANES)
+      real(wp), intent(in) :: dp(DIRECTIONS), y(DIRECTIONS, NY)
+      real(wp) :: changes(DIRECTIONS)
 
       changes = own%fluidity%by_p*dp + own%fluidity%by_ell*y(:, Y_FLUIDITY)
    end function changes_of_softening
@@ -274,8 +274,8 @@ contains
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: l, d
       type(of_options_t), intent(in) :: own
-      real(wp), intent(in) :: dl(LANES), flow(LANES), dp(LANES), y(LANES, NY)
-      real(wp), intent(inout) :: rates(LANES, NY)   !< rates of the options are set where they act
+      real(wp), intent(in) :: dl(DIRECTIONS), flow(DIRECTIONS), dp(DIRECTIONS), y(DIRECTIONS, NY)
+      real(wp), intent(inout) :: rates(DIRECTIONS, NY)   !< rates of the options are set where they act
 
       if (par%preloading) then
          if (d < 0.0_wp) then
@@ -289,8 +289,8 @@ contains
 
    !> Changes of L D times a number, from those of the rates, where contraction or dilation is a rate of an option.
    pure function changes_of_flow(d, rates) result(changes)
-      real(wp), intent(in) :: d, rates(LANES, NY)
-      real(wp) :: changes(LANES)
+      real(wp), intent(in) :: d, rates(DIRECTIONS, NY)
+      real(wp) :: changes(DIRECTIONS)
 
       changes = rates(:, Y_CONTRACTION)
       if (d < 0.0_wp) changes = rates(:, Y_LOG_CHI)
@@ -308,8 +308,8 @@ contains
    !> Adds the changes of these rates at a point of the vector; d_v changes by dv [-].
    pure subroutine add_volume_changes(par, d_v, point, y, dv, rates)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: d_v, point(NY), y(LANES, NY), dv(LANES)
-      real(wp), intent(inout) :: rates(LANES, NY)
+      real(wp), intent(in) :: d_v, point(NY), y(DIRECTIONS, NY), dv(DIRECTIONS)
+      real(wp), intent(inout) :: rates(DIRECTIONS, NY)
 
       if (par%fluid) &
          rates(:, Y_FLUIDITY) = rates(:, Y_FLUIDITY) - recovery_changes(par%fluidity, d_v, point(Y_FLUIDITY), y, dv)
@@ -328,8 +328,8 @@ contains
    !> Changes over that way, which begins at y0; h changes by dh, d_v by dv [-].
    pure subroutine changes_of_moved(par, d_v, h, y0, dh, dv, y)
       type(params_t), intent(in) :: par
-      real(wp), intent(in) :: d_v, h, y0(NY), dh(LANES), dv(LANES)
-      real(wp), intent(inout) :: y(LANES, NY)
+      real(wp), intent(in) :: d_v, h, y0(NY), dh(DIRECTIONS), dv(DIRECTIONS)
+      real(wp), intent(inout) :: y(DIRECTIONS, NY)
 
       if (par%fluid) y(:, Y_FLUIDITY) = recovered_changes(par%fluidity, d_v, h, y0(Y_FLUIDITY), y, dh, dv)
    end subroutine changes_of_moved

@@ -9,7 +9,7 @@ module mud_preloading
    use mud_kinds, only: wp
    use mud_params, only: preloading_law_t
    use mud_state, only: memory_t
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_vector, only: NY, Y_OPTIONS
    implicit none (type, external)
    private
@@ -93,9 +93,9 @@ contains
    pure function changes_of_contraction(log_chi0, log_chi, own, d_own, d_log_chi0, y) result(changes)
       real(wp), intent(in) :: log_chi0, log_chi
       real(wp), intent(in) :: own                           !< before it [-]
-      real(wp), intent(in) :: d_own(LANES), d_log_chi0(LANES)   !< derivatives before it
-      real(wp), intent(in) :: y(LANES, NY)                  !< derivatives of the vector at its end
-      real(wp) :: changes(LANES)
+      real(wp), intent(in) :: d_own(DIRECTIONS), d_log_chi0(DIRECTIONS)   !< derivatives before it
+      real(wp), intent(in) :: y(DIRECTIONS, NY)                  !< derivatives of the vector at its end
+      real(wp) :: changes(DIRECTIONS)
 
       changes = exp(min(log_chi - log_chi0, 0.0_wp))*(d_own + own*(y(:, Y_LOG_CHI) - d_log_chi0)) + y(:, Y_CONTRACTION)
    end function changes_of_contraction
@@ -106,8 +106,8 @@ contains
    pure subroutine jump_of_contraction(begins, resumes, before, after, own, log_chi)
       logical, intent(in) :: begins, resumes
       type(memory_t), intent(in) :: before, after
-      real(wp), intent(inout) :: own(LANES), log_chi(LANES)
-      real(wp) :: all(LANES), others
+      real(wp), intent(inout) :: own(DIRECTIONS), log_chi(DIRECTIONS)
+      real(wp) :: all(DIRECTIONS), others
 
       others = before%chi - before%chi_own
       all = own + others*log_chi

@@ -11,7 +11,7 @@ module mud_consistent
    use mud_loading_changes, only: changes_of_loading_strain
    use mud_mechanism_changes, only: below_t, begin_below, follow_below, end_below
    use mud_cutoff, only: MODE_HELD
-   use mud_driving, only: driving_t, whole_increment, change_of_place, DIRECTIONS, AT_REST
+   use mud_driving, only: driving_t, whole_increment, change_of_place, AT_REST
    use mud_fading, only: fading_t, NO_FADING, begin_fading, change_of_left, add_changes_of_faded
    use mud_held, only: changes_through_hold
    use mud_increment, only: increment_t, void_ratio_at, suction_at
@@ -27,7 +27,7 @@ module mud_consistent
    use mud_sensitivity, only: changes_of_rate
    use mud_state, only: memory_t
    use mud_substep, only: MAX_STAGES, stage_point, solution
-   use mud_tensor, only: IDENTITY, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
+   use mud_tensor, only: DIRECTIONS, IDENTITY, contracted, tensors_t, ZERO_TENSORS, ANY_TENSORS
    use mud_transient, only: without_turn, half_way
    use mud_trial, only: trial_t
    use mud_linearise, only: linearised_t, linearise, changes_t

@@ -5,12 +5,12 @@ module mud_driving
    use mud_kinds, only: wp
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_retention, only: slopes_of_suction
-   use mud_tensor, only: DIRECTIONS => LANES, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions
+   use mud_tensor, only: DIRECTIONS, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions
    use mud_turning, only: changes_of_exit
    implicit none (type, external)
    private
    public :: driving_t, whole_increment, change_of_place, change_of_zero_suction, change_of_turn, change_of_passing, &
-             DIRECTIONS, AT_REST
+             AT_REST
 
    !> Derivatives of what drives the increment along six engineering strains and the suction at the end of the
    !> increment, side by side. The eighth direction is idle: along it nothing changes.

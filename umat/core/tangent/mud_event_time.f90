@@ -5,7 +5,7 @@ module mud_event_time
    use mud_bounding_changes, only: change_of_psi, change_of_excess
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
    use mud_cutoff, only: MODE_HELD
-   use mud_driving, only: driving_t, DIRECTIONS
+   use mud_driving, only: driving_t
    use mud_event, only: event_changes_t, psi_at, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BY_RATE, BY_DRIVE, &
       BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MEMORY
    use mud_event_closes, only: closing_mode, rate_without_past
@@ -19,7 +19,7 @@ module mud_event_time
    use mud_rates, only: stress_ratio, p_follows
    use mud_sensitivity, only: changes_of_rate, changes_of_drive, changes_of_iso_drive
    use mud_state, only: counters_t
-   use mud_tensor, only: tensors_t, ANY_TENSORS
+   use mud_tensor, only: DIRECTIONS, tensors_t, ANY_TENSORS
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)

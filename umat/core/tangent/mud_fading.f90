@@ -3,7 +3,7 @@
 !> docs/theory/integration.md section 2.2.
 module mud_fading
    use mud_kinds, only: wp
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_transient, only: transient_t, split
    use mud_vector, only: NY
    implicit none (type, external)
@@ -12,7 +12,7 @@ module mud_fading
 
    !> Changes of the parts that fade, along the directions of a derivative.
    type :: fading_t
-      real(wp) :: parts(LANES, NY, 2), speed(LANES), since(LANES)
+      real(wp) :: parts(DIRECTIONS, NY, 2), speed(DIRECTIONS), since(DIRECTIONS)
    end type fading_t
    type(fading_t), parameter :: NO_FADING = fading_t(0.0_wp, 0.0_wp, 0.0_wp)
 
@@ -22,10 +22,10 @@ contains
    !> Changes of the parts from those of the three rates, half that of two terms; k changes by speed, the time from
    !> which they fade by since. Derivative of docs/theory/integration.md section 2.2.
    pure subroutine begin_fading(now, far, speed, since, fading, half)
-      real(wp), intent(in), dimension(LANES, NY) :: now, far
-      real(wp), intent(in), dimension(LANES) :: speed, since
+      real(wp), intent(in), dimension(DIRECTIONS, NY) :: now, far
+      real(wp), intent(in), dimension(DIRECTIONS) :: speed, since
       type(fading_t), intent(inout) :: fading
-      real(wp), intent(in), optional :: half(LANES, NY)
+      real(wp), intent(in), optional :: half(DIRECTIONS, NY)
 
       if (present(half)) then
          call split(now, far, half, fading%parts(:, :, 1), fading%parts(:, :, 2))
@@ -45,9 +45,9 @@ contains
       type(transient_t), intent(in) :: transient
       type(fading_t), intent(in) :: fading
       integer, intent(in) :: n, live   !< live: numbers that may change
-      real(wp), intent(in) :: h, weights(n), left(n + 1), d_left(LANES, n + 1)
-      real(wp), intent(inout) :: y(LANES, live)
-      real(wp) :: factors(2), along(LANES, 2), weight
+      real(wp), intent(in) :: h, weights(n), left(n + 1), d_left(DIRECTIONS, n + 1)
+      real(wp), intent(inout) :: y(DIRECTIONS, live)
+      real(wp) :: factors(2), along(DIRECTIONS, 2), weight
       integer :: i
 
       if (left(1) <= 0.0_wp) return
@@ -90,8 +90,8 @@ contains
    pure subroutine change_of_left(transient, fading, time, dt, left, change)
       type(transient_t), intent(in) :: transient
       type(fading_t), intent(in) :: fading
-      real(wp), intent(in) :: time, dt(LANES)
-      real(wp), intent(out) :: left, change(LANES)
+      real(wp), intent(in) :: time, dt(DIRECTIONS)
+      real(wp), intent(out) :: left, change(DIRECTIONS)
 
       left = 0.0_wp
       change = 0.0_wp

@@ -5,7 +5,7 @@ module mud_follow
    use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_of_parting, &
       changes_of_ratio, jump_of_memory
    use mud_cutoff, only: MODE_HELD
-   use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing, DIRECTIONS
+   use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing
    use mud_event_table, only: EVENTS
    use mud_event_time, only: move_event
    use mud_increment, only: increment_t
@@ -16,7 +16,7 @@ module mud_follow
    use mud_params, only: params_t
    use mud_phases, only: cut_t, CUT_TURN, CUT_NO_SUCTION, CUT_EXIT, CUT_KINK
    use mud_retention, only: moves_with_turn
-   use mud_tensor, only: tensors_t, ANY_TENSORS
+   use mud_tensor, only: DIRECTIONS, tensors_t, ANY_TENSORS
    implicit none (type, external)
    private
    public :: follow_phase, follow_turn, follow_substep

@@ -5,13 +5,13 @@ module mud_held
    use mud_bounding, only: psi_of, excess
    use mud_bounding_changes, only: change_of_psi, change_of_excess, change_of_limited
    use mud_cutoff, only: slide, soil_void_ratio
-   use mud_driving, only: driving_t, change_of_place, DIRECTIONS
+   use mud_driving, only: driving_t, change_of_place
    use mud_elastic, only: shear_modulus, shear_slope
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_state, only: state_t
-   use mud_tensor, only: trace, deviator, norm
+   use mud_tensor, only: DIRECTIONS, trace, deviator, norm
    use mud_vector, only: NY
    implicit none (type, external)
    private

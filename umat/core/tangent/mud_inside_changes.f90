@@ -2,14 +2,14 @@
 !> Derivatives of a substep inside the elastic domain, in closed form; derivative of docs/theory/memory-rules.md
 !> section 4.3.
 module mud_inside_changes
-   use mud_driving, only: driving_t, change_of_place, DIRECTIONS
+   use mud_driving, only: driving_t, change_of_place
    use mud_elastic, only: bulk_modulus, pressure_root, changed_centre_modulus, compressed
    use mud_increment, only: increment_t, void_ratio_at, volume_from_centre
    use mud_kinds, only: wp
    use mud_options, only: changes_of_moved
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio, p_follows
-   use mud_tensor, only: deviator
+   use mud_tensor, only: DIRECTIONS, deviator
    use mud_vector, only: NY
    implicit none (type, external)
    private

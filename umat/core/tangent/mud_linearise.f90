@@ -15,12 +15,12 @@ module mud_linearise
    use mud_rate, only: rate_t
    use mud_rates, only: p_follows
    use mud_retention, only: moves_with_turn
-   use mud_tensor, only: LANES, contractions, trace
+   use mud_tensor, only: DIRECTIONS, contractions, trace
    use mud_turn, only: turn_t, find_turn
    use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: linearised_t, linearise, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
+   public :: linearised_t, linearise, changes_t, inner_changes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
              linearise_mechanism, changes_of_hardening
 
    !> Terms of a derivative of a rate that all directions share.
@@ -42,30 +42,30 @@ module mud_linearise
 
    !> Changes of the arguments of a rate beside stress, fabric and memory.
    type :: changes_t
-      real(wp), dimension(LANES) :: e, p_c, d_pc   !< changes of void ratio, suction and its rate [-, kPa, kPa]
+      real(wp), dimension(DIRECTIONS) :: e, p_c, d_pc   !< changes of void ratio, suction and its rate [-, kPa, kPa]
       type(loading_t) :: loading                   !< changes of the strain rate that loads
       logical :: scans                             !< The branch changes with its turn; otherwise turn is not set.
-      real(wp) :: turn(LANES)                      !< changes of ln x of that turn [-]
+      real(wp) :: turn(DIRECTIONS)                      !< changes of ln x of that turn [-]
    end type changes_t
 
    !> Changes of a tensor as a sum. Of those of the whole strain rate, of stress, and of what loads as far as it is not
    !> along fixed tensors, by factors; of the fixed tensors, n, r and the unit tensor by numbers that change.
    type :: sum_t
       real(wp) :: of_whole, of_loading, of_stress
-      real(wp), dimension(LANES) :: first, second, n, r, p
+      real(wp), dimension(DIRECTIONS) :: first, second, n, r, p
    end type sum_t
    type(sum_t), parameter :: NO_SUM = sum_t(0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp)
 
    !> Changes between those of a rate's arguments and those of its results.
-   type :: lanes_t
-      real(wp), dimension(LANES) :: mean, v          !< a third of the trace of stress; trace of the strain rate
-      real(wp), dimension(LANES) :: p, share         !< changes of p', and over p'
-      real(wp), dimension(LANES) :: f, f_pc, f_e     !< changes of f, df/dp_c, df/de
-      real(wp), dimension(LANES) :: k, g, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
-      real(wp), dimension(LANES) :: n_dr, h_dr, d_dr, gamma_dr   !< n:dr, and of the gradients along n
-      real(wp), dimension(LANES) :: dl, flow         !< changes of L and of L D
+   type :: inner_changes_t
+      real(wp), dimension(DIRECTIONS) :: mean, v          !< a third of the trace of stress; trace of the strain rate
+      real(wp), dimension(DIRECTIONS) :: p, share         !< changes of p', and over p'
+      real(wp), dimension(DIRECTIONS) :: f, f_pc, f_e     !< changes of f, df/dp_c, df/de
+      real(wp), dimension(DIRECTIONS) :: k, g, psi, m_b, k_e, b, volumetric, dd, dh, beta, gamma
+      real(wp), dimension(DIRECTIONS) :: n_dr, h_dr, d_dr, gamma_dr   !< n:dr, and of the gradients along n
+      real(wp), dimension(DIRECTIONS) :: dl, flow         !< changes of L and of L D
       type(sum_t) :: turn                            !< dn
-   end type lanes_t
+   end type inner_changes_t
 contains
    !> Prepares the derivative of a rate w that was evaluated at (sigma, e, p_c) for the strain rate of loading and d_pc.
    !> sigma' and p_c [kPa], compression positive; e [-]; d_pc [kPa]. Of a rate that does not load the gradients and the
@@ -142,7 +142,7 @@ contains
    pure subroutine rest(w, changes, x)
       type(rate_t), intent(in) :: w
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(inout) :: x
+      type(inner_changes_t), intent(inout) :: x
       real(wp) :: b
 
       b = 0.0_wp
@@ -169,9 +169,9 @@ contains
    pure subroutine change_point(w, lin, y, changes, x)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(inout) :: x
+      type(inner_changes_t), intent(inout) :: x
       real(wp) :: follows
       integer :: j
 
@@ -185,7 +185,7 @@ contains
          x%f_pc = x%f_pc + lin%with_turn(2)*changes%turn
          x%f_e = x%f_e + lin%with_turn(3)*changes%turn
       end if
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          x%p(j) = follows*x%mean(j)
          x%share(j) = x%p(j)*lin%per_p
          x%k(j) = w%k*(BULK_EXPONENT*x%share(j) + changes%e(j)*lin%k_slope)
@@ -206,8 +206,8 @@ contains
    !> a_on_r is a:r.
    pure function along_ratio(lin, y, p, a, a_on_r) result(c)
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NY), p(LANES), a(6), a_on_r
-      real(wp) :: c(LANES)
+      real(wp), intent(in) :: y(DIRECTIONS, NY), p(DIRECTIONS), a(6), a_on_r
+      real(wp) :: c(DIRECTIONS)
 
       c = lin%per_p*(contractions(y(:, 1:6), a) - a_on_r*p)
    end function along_ratio
@@ -216,18 +216,18 @@ contains
    pure subroutine changes_of_hardening(w, lin, y, changes, x, a, b)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(in) :: x
-      real(wp), dimension(LANES), intent(out) :: a, b
-      real(wp), dimension(LANES) :: r_dr, r_b
+      type(inner_changes_t), intent(in) :: x
+      real(wp), dimension(DIRECTIONS), intent(out) :: a, b
+      real(wp), dimension(DIRECTIONS) :: r_dr, r_b
       real(wp) :: f
       integer :: j
 
       r_dr = along_ratio(lin, y, x%p, w%r, w%r_norm**2)
       r_b = (lin%per_p/lin%lode_r)*contractions(y(:, 1:6), lin%lode_r_slope) + x%m_b/w%m_b   ! no part along r
       associate (of => lin%mechanism)
-         do j = 1, LANES
+         do j = 1, DIRECTIONS
             f = lin%per_f*x%f(j)
             a(j) = of%a(BY_P)*x%share(j) + of%a(BY_E)*changes%e(j) + of%a(BY_F)*f + of%a(BY_F_E)*x%f_e(j) &
                 + of%a(BY_R)*r_dr(j) + of%a(BY_R_B)*r_b(j)
@@ -241,10 +241,10 @@ contains
    pure subroutine change_of_mechanism(w, lin, y, changes, x)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(inout) :: x
-      real(wp), dimension(LANES) :: a, b
+      type(inner_changes_t), intent(inout) :: x
+      real(wp), dimension(DIRECTIONS) :: a, b
       real(wp) :: k_a, softening, per_softening, dk
       integer :: j
 
@@ -252,7 +252,7 @@ contains
       softening = k_a*w%iso%a
       per_softening = 1.0_wp/(1.0_wp + softening)
       call changes_of_hardening(w, lin, y, changes, x, a, b)
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          dk = x%k(j)/w%k
          x%k_e(j) = w%k_e*(dk - (k_a*a(j) + softening*(dk - x%share(j)))*per_softening)
          x%b(j) = w%iso%b*changes%d_pc(j) + lin%d_pc*b(j)

@@ -3,7 +3,7 @@
 !> strain, of those of the elastic domain at the start, and of two fixed tensors.
 module mud_loading
    use mud_kinds, only: wp
-   use mud_tensor, only: LANES, tensors_t, contracted, traces, ddot, trace, UNIT_STRAINS, ANY_TENSORS
+   use mud_tensor, only: DIRECTIONS, tensors_t, contracted, traces, ddot, trace, UNIT_STRAINS, ANY_TENSORS
    implicit none (type, external)
    private
    public :: loading_t, whole_strain, no_strain, loading_contracted, loading_traces, add_loading
@@ -16,9 +16,9 @@ module mud_loading
       logical :: beside                   !< a part of its changes does not
       real(wp) :: part(2), whole(2)       !< factors of what loads, of the whole strain rate
       real(wp) :: of_strain, of_centre    !< factors of the changes of strain rate and centre
-      real(wp) :: along(LANES, 2)         !< changes along the fixed tensors
+      real(wp) :: along(DIRECTIONS, 2)         !< changes along the fixed tensors
       real(wp) :: from_centre             !< volumetric strain from the centre of the elastic domain, if beside
-      real(wp) :: of_volume(LANES)        !< changes of that, if aside
+      real(wp) :: of_volume(DIRECTIONS)        !< changes of that, if aside
    end type loading_t
 contains
    !> All of a strain rate loads. d_strain [-].
@@ -54,7 +54,7 @@ contains
       type(loading_t), intent(in) :: loading
       type(tensors_t), intent(in) :: strain, centre
       real(wp), intent(in) :: a(6)
-      real(wp) :: c(LANES)
+      real(wp) :: c(DIRECTIONS)
 
       c = ddot(loading%basis(:, 1), a)*loading%along(:, 1)
       if (loading%turns) c = c + ddot(loading%basis(:, 2), a)*loading%along(:, 2)
@@ -70,7 +70,7 @@ contains
    pure function loading_traces(loading, strain, centre) result(c)
       type(loading_t), intent(in) :: loading
       type(tensors_t), intent(in) :: strain, centre
-      real(wp) :: c(LANES)
+      real(wp) :: c(DIRECTIONS)
 
       c = loading%of_strain*traces(strain) + trace(loading%basis(:, 1))*loading%along(:, 1) &
           + trace(loading%basis(:, 2))*loading%along(:, 2)
@@ -81,7 +81,7 @@ contains
    pure subroutine add_loading(strain, centre, of_strain, of_centre, sums)
       type(tensors_t), intent(in) :: strain, centre
       real(wp), intent(in) :: of_strain, of_centre
-      real(wp), intent(inout) :: sums(LANES, 6)
+      real(wp), intent(inout) :: sums(DIRECTIONS, 6)
       integer :: i
 
       if (strain%kind == UNIT_STRAINS) then

@@ -7,7 +7,7 @@ module mud_loading_changes
    use mud_kinds, only: wp
    use mud_loading, only: loading_t, no_strain, whole_strain
    use mud_rates, only: MODE_ELASTIC
-   use mud_tensor, only: LANES, ddot, trace, traces, tensors_t, contracted, UNIT_STRAINS, ANY_TENSORS
+   use mud_tensor, only: DIRECTIONS, ddot, trace, traces, tensors_t, contracted, UNIT_STRAINS, ANY_TENSORS
    use mud_turning, only: turning_t, turning_at, combination_t, combination_of_turning
    implicit none (type, external)
    private
@@ -21,7 +21,7 @@ contains
       integer, intent(in) :: mode
       real(wp), intent(in) :: time             !< a share of inc
       type(tensors_t), intent(in) :: strain, centre   !< changes of both
-      real(wp), intent(in) :: dt(LANES)        !< changes of the pseudo-time since the exit
+      real(wp), intent(in) :: dt(DIRECTIONS)        !< changes of the pseudo-time since the exit
       type(loading_t), intent(inout) :: loading
       type(turning_t) :: turning
       type(combination_t) :: by
@@ -66,7 +66,7 @@ contains
       on_d = turning%length*by%of_d
       on_length = turning%length*by%of_increment + nu(2)
       d_on_u = turning%length*ddot(turning%d, turning%u)
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          ! (dnu:a + nu:da) nu + (nu:a) dnu with a along u
          turn = on_d*by%d_on_u(j) + on_length*by%length(j) + d_on_u*by%along_d(j) + turning%length*by%along_u(j) &
                 + nu(1)*by%increment_on_d(j)
@@ -78,7 +78,7 @@ contains
       on_d = inc%rho*trace(turning%d)
       on_length = inc%rho*inc%d_v/turning%length
       turn_rate = inc%d_v - along*(loading%from_centre/inc%rho)
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          loading%of_volume(j) = on_d*by%along_d(j) + on_length*by%along_u(j) + turn_rate*dt(j)
       end do
       if (strain%kind == UNIT_STRAINS) then

@@ -14,7 +14,7 @@ module mud_mechanism_changes
    use mud_rates, only: p_follows
    use mud_state, only: state_t
    use mud_substep, only: MAX_STAGES
-   use mud_tensor, only: LANES
+   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
@@ -25,7 +25,7 @@ module mud_mechanism_changes
    !> less its measure, which is a function of the state.
    type :: below_t
       logical :: follows   !< The mechanism rests, and its margin is followed; otherwise nothing else is set.
-      real(wp) :: of_stages(LANES, MAX_STAGES)   !< changes of what the stages add
+      real(wp) :: of_stages(DIRECTIONS, MAX_STAGES)   !< changes of what the stages add
       real(wp) :: margins(MAX_STAGES), rates(MAX_STAGES), start   !< see margins_at_stages
    end type below_t
 contains
@@ -49,12 +49,12 @@ contains
       type(trial_t), intent(in) :: trial
       real(wp), intent(in) :: h
       integer, intent(in) :: i
-      real(wp), intent(in) :: point(NY), time, dt(LANES), dh(LANES)
-      real(wp), intent(in) :: short(LANES)   !< derivatives where the substep begins
+      real(wp), intent(in) :: point(NY), time, dt(DIRECTIONS), dh(DIRECTIONS)
+      real(wp), intent(in) :: short(DIRECTIONS)   !< derivatives where the substep begins
       type(driving_t), intent(in) :: driving
-      real(wp), intent(in) :: y(LANES, NY), rate(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY), rate(DIRECTIONS, NY)
       type(below_t), intent(inout) :: below
-      real(wp), dimension(LANES) :: de, dp_c, du
+      real(wp), dimension(DIRECTIONS) :: de, dp_c, du
       integer :: j, row
 
       if (.not. below%follows) return
@@ -74,7 +74,7 @@ contains
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: last
       type(below_t), intent(in) :: below
-      real(wp), intent(inout) :: short(LANES)
+      real(wp), intent(inout) :: short(DIRECTIONS)
       integer :: i
 
       if (.not. below%follows) return
@@ -88,11 +88,11 @@ contains
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
       type(state_t), intent(in) :: state
-      real(wp), intent(in) :: time, shift(LANES)   !< Where the next substep begins, and how that moves.
+      real(wp), intent(in) :: time, shift(DIRECTIONS)   !< Where the next substep begins, and how that moves.
       type(driving_t), intent(in) :: driving
-      real(wp), intent(in) :: y(LANES, NY)
-      real(wp), intent(inout) :: short(LANES)
-      real(wp), dimension(LANES) :: de, dp_c
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
+      real(wp), intent(inout) :: short(DIRECTIONS)
+      real(wp), dimension(DIRECTIONS) :: de, dp_c
 
       if (.not. (par%remembers .and. state%margin >= 0.0_wp)) return
       call change_of_place(inc, time, void_ratio_at(inc, time), shift, driving, de, dp_c)
@@ -103,10 +103,10 @@ contains
    pure function changes_of_short(par, inc, time, sigma, short, y, de, dp_c, scans, turn) result(change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, sigma(6), short(LANES), y(LANES, 3), de(LANES), dp_c(LANES)
+      real(wp), intent(in) :: time, sigma(6), short(DIRECTIONS), y(DIRECTIONS, 3), de(DIRECTIONS), dp_c(DIRECTIONS)
       logical, intent(in) :: scans
-      real(wp), intent(in) :: turn(LANES)   !< Read where it scans.
-      real(wp) :: change(LANES)
+      real(wp), intent(in) :: turn(DIRECTIONS)   !< Read where it scans.
+      real(wp) :: change(DIRECTIONS)
 
       change = short + changes_of_measure(par, inc, time, sigma, y, de, dp_c, scans, turn)
    end function changes_of_short
@@ -116,10 +116,10 @@ contains
    pure function changes_of_measure(par, inc, time, sigma, y, de, dp_c, scans, turn) result(change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, sigma(6), y(LANES, 3), de(LANES), dp_c(LANES)
+      real(wp), intent(in) :: time, sigma(6), y(DIRECTIONS, 3), de(DIRECTIONS), dp_c(DIRECTIONS)
       logical, intent(in) :: scans
-      real(wp), intent(in) :: turn(LANES)   !< Read where it scans.
-      real(wp) :: change(LANES), with_turn(3), e, p_c
+      real(wp), intent(in) :: turn(DIRECTIONS)   !< Read where it scans.
+      real(wp) :: change(DIRECTIONS), with_turn(3), e, p_c
       type(measure_t) :: m
       type(bonding_t) :: bond
 
@@ -141,8 +141,9 @@ contains
       type(increment_t), intent(in) :: inc
       real(wp), intent(in) :: time, margin
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: du(LANES), y(LANES, 3), de(LANES), dp_c(LANES), rates(LANES, 3), d_v(LANES)
-      real(wp), dimension(LANES) :: change, dp, dk, flow, df, df_e
+      real(wp), intent(in), dimension(DIRECTIONS) :: du, de, dp_c, d_v
+      real(wp), intent(in), dimension(DIRECTIONS, 3) :: y, rates
+      real(wp), dimension(DIRECTIONS) :: change, dp, dk, flow, df, df_e
       type(measure_t) :: m
       real(wp) :: e, curvature(3), on_flow
 

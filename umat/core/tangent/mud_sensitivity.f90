@@ -10,10 +10,10 @@
 module mud_sensitivity
    use mud_kinds, only: wp, SQRT_2_3
    use mud_params, only: params_t
-   use mud_linearise, only: linearised_t, changes_t, lanes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
+   use mud_linearise, only: linearised_t, changes_t, inner_changes_t, sum_t, NO_SUM, rest, change_point, along_ratio, &
       linearise_mechanism, changes_of_hardening
    use mud_rate, only: rate_t
-   use mud_tensor, only: LANES, tensors_t, contractions, contracted, traces, ZERO_TENSORS
+   use mud_tensor, only: DIRECTIONS, tensors_t, contractions, contracted, traces, ZERO_TENSORS
    use mud_loading, only: loading_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
    use mud_hardening, only: KINEMATIC_EXPONENT
@@ -32,14 +32,14 @@ contains
       type(linearised_t), intent(in) :: lin
       logical, intent(in) :: at_rest                  !< y, r_in and the changes of e and p_c are zero
       !> Changes of sigma', z, the numbers of options and, without effect, plastic shear [kPa, -, -].
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(tensors_t), intent(in) :: r_in             !< changes of the memory [-]
       type(tensors_t), intent(in) :: strain, centre   !< changes of strain rate and elastic domain [-]
       type(changes_t), intent(in) :: changes
       logical, intent(in) :: stress_only              !< rates of fabric and plastic shear are not asked for: zeros
-      real(wp), intent(out) :: rates(LANES, NY)   !< changes of the rates, as y
-      real(wp), intent(out), optional :: dn(LANES, 6)
-      type(lanes_t) :: x
+      real(wp), intent(out) :: rates(DIRECTIONS, NY)   !< changes of the rates, as y
+      real(wp), intent(out), optional :: dn(DIRECTIONS, 6)
+      type(inner_changes_t) :: x
 
       x%v = loading_traces(changes%loading, strain, centre)
       if (at_rest) then
@@ -74,11 +74,11 @@ contains
    pure function changes_of_drive(w, lin, y, strain, centre, changes) result(c)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NY)   !< changes of sigma', z and, without effect, plastic shear [kPa, -, -]
+      real(wp), intent(in) :: y(DIRECTIONS, NY)   !< changes of sigma', z and, without effect, plastic shear [kPa, -, -]
       type(tensors_t), intent(in) :: strain, centre   !< changes of strain rate and elastic domain [-]
       type(changes_t), intent(in) :: changes
-      real(wp) :: c(LANES)
-      type(lanes_t) :: x
+      real(wp) :: c(DIRECTIONS)
+      type(inner_changes_t) :: x
 
       x%v = loading_traces(changes%loading, strain, centre)
       call change_point(w, lin, y, changes, x)
@@ -94,13 +94,13 @@ contains
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
       real(wp), intent(in) :: e
-      real(wp), intent(in) :: y(LANES, NY), rates(LANES, NY)   !< as in changes_of_rate
+      real(wp), intent(in) :: y(DIRECTIONS, NY), rates(DIRECTIONS, NY)   !< as in changes_of_rate
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
-      real(wp) :: c(LANES)
+      real(wp) :: c(DIRECTIONS)
       type(linearised_t) :: there
-      type(lanes_t) :: x
-      real(wp), dimension(LANES) :: a, b, d_p
+      type(inner_changes_t) :: x
+      real(wp), dimension(DIRECTIONS) :: a, b, d_p
       real(wp) :: by_p
 
       there = lin
@@ -120,11 +120,11 @@ contains
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(tensors_t), intent(in) :: r_in
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(inout) :: x
-      real(wp) :: n_dz(LANES), q(LANES), r_b, r_d_psi, r_b_m, per_p
+      type(inner_changes_t), intent(inout) :: x
+      real(wp) :: n_dz(DIRECTIONS), q(DIRECTIONS), r_b, r_d_psi, r_b_m, per_p
       integer :: j
 
       r_b_m = SQRT_2_3*w%lode
@@ -158,7 +158,7 @@ contains
             if (r_in%kind /= ZERO_TENSORS) x%dd = x%dd - s%d_x*contracted(r_in, w%n)
          end if
       end associate
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          r_b = r_b_m*x%m_b(j)
          x%beta(j) = 2.0_wp/3.0_wp*x%p(j) + (w%k_e*w%d)*x%dh(j) + (w%h_b*w%d)*x%k_e(j) + (w%h_b*w%k_e)*x%dd(j)
          x%gamma(j) = 2.0_wp/3.0_wp*(w%r_b*x%p(j) + w%p*r_b) + (2.0_wp*w%h_b)*x%g(j) + (2.0_wp*w%g)*x%dh(j)
@@ -173,8 +173,8 @@ contains
       type(linearised_t), intent(in) :: lin
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(inout) :: x
-      real(wp), dimension(LANES) :: n_e, h_e, d_e, gamma_e
+      type(inner_changes_t), intent(inout) :: x
+      real(wp), dimension(DIRECTIONS) :: n_e, h_e, d_e, gamma_e
       real(wp), dimension(4) :: on_g, on_v
       real(wp) :: elastic, on_e, on_dr, n_t, h_t, d_t, gamma_t, s_1, s_2, s_3, dy, dh, dd, a, b, e
       integer :: j
@@ -192,7 +192,7 @@ contains
       on_g = 2.0_wp*w%y*lin%on_e
       on_v = w%y*lin%on_r
       associate (loading => changes%loading)
-         do j = 1, LANES
+         do j = 1, DIRECTIONS
             ! n, h_n, d_n, gamma_n : (y dt + beta dr)
             n_t = on_e*n_e(j) + on_g(1)*x%g(j) - on_v(1)*x%volumetric(j) + on_dr*x%n_dr(j)
             h_t = on_e*h_e(j) + on_g(2)*x%g(j) - on_v(2)*x%volumetric(j) + on_dr*x%h_dr(j)
@@ -224,13 +224,13 @@ contains
    pure subroutine fill_stress(w, lin, y, strain, centre, changes, x, rates)
       type(rate_t), intent(in) :: w
       type(linearised_t), intent(in) :: lin
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(in) :: x
-      real(wp), intent(out) :: rates(LANES, 6)
+      type(inner_changes_t), intent(in) :: x
+      real(wp), intent(out) :: rates(DIRECTIONS, 6)
       type(sum_t) :: s
-      real(wp) :: drag, more, v(LANES), dg_less
+      real(wp) :: drag, more, v(DIRECTIONS), dg_less
       integer :: j
 
       drag = -2.0_wp*w%g*w%l
@@ -240,7 +240,7 @@ contains
       s%of_loading = drag*x%turn%of_loading + more
       s%of_stress = drag*x%turn%of_stress
       associate (whole => changes%loading%whole, part => changes%loading%part, along => changes%loading%along)
-         do j = 1, LANES
+         do j = 1, DIRECTIONS
             s%first(j) = drag*x%turn%first(j) + (2.0_wp*whole(1))*x%g(j) + more*along(j, 1)
             s%second(j) = drag*x%turn%second(j) + (2.0_wp*whole(2))*x%g(j) + more*along(j, 2)
             s%n(j) = drag*x%turn%n(j) - 2.0_wp*(w%l*x%g(j) + w%g*x%dl(j))
@@ -250,7 +250,7 @@ contains
                      - (2.0_wp*(lin%whole_v*x%g(j) + lin%g_centre*v(j)) + more*x%v(j))*(1.0_wp/3.0_wp)
          end do   ! deviators
          if (lin%aside) then
-            do j = 1, LANES
+            do j = 1, DIRECTIONS
                dg_less = 2.0_wp*(lin%g_centre_slopes(1)*x%share(j) + lin%g_centre_slopes(2)*changes%e(j) &
                                  + lin%g_centre_slopes(3)*changes%loading%of_volume(j) - x%g(j))
                s%first(j) = s%first(j) + (whole(1) - part(1))*dg_less
@@ -266,11 +266,11 @@ contains
    pure subroutine fill_fabric(par, w, y, strain, centre, changes, x, rates)
       type(params_t), intent(in) :: par
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
-      type(lanes_t), intent(in) :: x
-      real(wp), intent(out) :: rates(LANES, 6)
+      type(inner_changes_t), intent(in) :: x
+      real(wp), intent(out) :: rates(DIRECTIONS, 6)
       type(sum_t) :: s
       real(wp) :: turning, turned
       integer :: i, j
@@ -280,7 +280,7 @@ contains
       s%of_whole = 0.0_wp
       s%of_loading = turned*x%turn%of_loading
       s%of_stress = turned*x%turn%of_stress
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          s%first(j) = turned*x%turn%first(j)
          s%second(j) = turned*x%turn%second(j)
          s%n(j) = turned*x%turn%n(j) + (par%flow%c_z*par%flow%z_max)*x%flow(j)
@@ -288,7 +288,7 @@ contains
          s%p(j) = turned*x%turn%p(j)
       end do
       call add_up(w, y, strain, centre, changes, s, rates)
-      do j = 1, LANES
+      do j = 1, DIRECTIONS
          do i = 1, 6
             rates(j, i) = rates(j, i) + (par%flow%c_z*w%z(i))*x%flow(j) + turning*y(j, 6 + i)
          end do
@@ -298,15 +298,15 @@ contains
    !> The sum of what s says. strain and centre are the changes [-] that the loading refers to, y has those of stress.
    pure subroutine add_up(w, y, strain, centre, changes, s, total)
       type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: y(LANES, NY)
+      real(wp), intent(in) :: y(DIRECTIONS, NY)
       type(tensors_t), intent(in) :: strain, centre
       type(changes_t), intent(in) :: changes
       type(sum_t), intent(in) :: s
-      real(wp), intent(out) :: total(LANES, 6)
+      real(wp), intent(out) :: total(DIRECTIONS, 6)
       integer :: i, j
 
       associate (loading => changes%loading, b => changes%loading%basis)
-         do j = 1, LANES
+         do j = 1, DIRECTIONS
             do i = 1, 3
                total(j, i) = s%of_stress*y(j, i) + b(i, 1)*s%first(j) + b(i, 2)*s%second(j) + w%n(i)*s%n(j) &
                              + w%r(i)*s%r(j) + s%p(j)

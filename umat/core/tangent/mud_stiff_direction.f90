@@ -12,7 +12,7 @@ module mud_stiff_direction
    use mud_relaxation, only: new_relaxation
    use mud_sensitivity, only: changes_of_rate
    use mud_substep, only: LINEARLY_IMPLICIT
-   use mud_tensor, only: LANES, tensors_t, ZERO_TENSORS
+   use mud_tensor, only: DIRECTIONS, tensors_t, ZERO_TENSORS
    use mud_trial, only: trial_t
    use mud_vector, only: NY, Y_SHEAR, N_OPTIONS
    implicit none (type, external)
@@ -29,7 +29,7 @@ contains
       type(trial_t), intent(inout) :: trial
       type(linearised_t) :: lin
       type(changes_t) :: changes
-      real(wp) :: y(LANES, NY), rates(LANES, NY), unmoved(LANES), own(N_OPTIONS)
+      real(wp) :: y(DIRECTIONS, NY), rates(DIRECTIONS, NY), unmoved(DIRECTIONS), own(N_OPTIONS)
       integer :: j
 
       ! the strain rate is held

@@ -4,7 +4,7 @@
 module mud_turning
    use mud_elastic_domain, only: find_tractrix
    use mud_kinds, only: wp
-   use mud_tensor, only: LANES, ddot, norm, tensors_t, contracted
+   use mud_tensor, only: DIRECTIONS, ddot, norm, tensors_t, contracted
    implicit none (type, external)
    private
    public :: turning_t, turning_at, combination_t, combination_of_turning, changes_of_exit
@@ -20,10 +20,10 @@ module mud_turning
    !> Changes of nu as a sum: of_d times those of d, of_increment times those of the increment, and parts along d and u.
    type :: combination_t
       real(wp) :: of_d, of_increment
-      real(wp), dimension(LANES) :: along_d, along_u
+      real(wp), dimension(DIRECTIONS) :: along_d, along_u
       ! contractions on the way there
-      real(wp), dimension(LANES) :: length           !< changes of the increment along u [-]
-      real(wp), dimension(LANES) :: d_on_u, increment_on_d
+      real(wp), dimension(DIRECTIONS) :: length           !< changes of the increment along u [-]
+      real(wp), dimension(DIRECTIONS) :: d_on_u, increment_on_d
    end type combination_t
 contains
    !> Changes of that share with d and the increment. All [-]; the share is that of exit_share, below 1. Derivative of
@@ -31,7 +31,7 @@ contains
    pure function changes_of_exit(d, increment, share, d_changes, increment_changes) result(changes)
       real(wp), intent(in) :: d(6), increment(6), share
       type(tensors_t), intent(in) :: d_changes, increment_changes
-      real(wp) :: changes(LANES), at_exit(6)
+      real(wp) :: changes(DIRECTIONS), at_exit(6)
 
       at_exit = d + share*increment
       changes = -(contracted(d_changes, at_exit) + share*contracted(increment_changes, at_exit)) &
@@ -80,7 +80,7 @@ contains
          share_cosine = (1.0_wp - decay)**2
          share_decay = -2.0_wp*(decay + cosine*(1.0_wp - decay))
          on_d = 2.0_wp*per_rho*per_divisor
-         do j = 1, LANES
+         do j = 1, DIRECTIONS
             dcosine = (by%d_on_u(j) + (by%increment_on_d(j) - d_u*by%length(j))*per_length)*per_rho
             ddecay = decay_slope*by%length(j)
             ddivisor = divisor_cosine*dcosine + divisor_decay*ddecay

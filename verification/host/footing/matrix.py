@@ -62,8 +62,8 @@ def run(program, name):
         scratch = pathlib.Path(scratch)
         text = changed((HERE / "scene.nml").read_text(encoding="utf-8"), CASES[name])
         (scratch / "scene.nml").write_text(text, encoding="utf-8")
-        done = subprocess.run([program, scratch / "scene.nml", "--output", scratch / "out"], capture_output=True,
-                              text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
+        done = subprocess.run([program, scratch / "scene.nml", "--verbose", "--output", scratch / "out"],
+                              capture_output=True, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"})
         settlement, pressure = curve(scratch / "out")
         if "surcharge 2, plate" in name:
             pressure = pressure + 2

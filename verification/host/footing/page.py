@@ -32,18 +32,22 @@ def pressures(bench, name, tolerance, measure="auto"):
     return matrix.curve(bench.host("scene.nml", changes))
 
 
+def both(curve, tight):
+    """Pressures of two runs at the settlements that both have: where one cuts a step it has a row in between."""
+    there = np.isclose(curve[0][:, None], tight[0][None, :], rtol=1e-9, atol=0)
+    assert there.sum() >= min(len(curve[0]), len(tight[0])) and there[-1, -1], "a step of one run is not in the other"
+    return curve[1][there.any(axis=1)], tight[1][there.any(axis=0)]
+
+
 def check(bench):
     for name in list(SOILS)[:1 if bench.quick else None]:
-        _, tight = pressures(bench, SOILS[name], 1e-8)
-        settlement, default = pressures(bench, SOILS[name], 1e-3)
-        bench.near(f"{name}: the default, every step", default, tight, TWO_PER_CENT, "kPa")
+        tight = pressures(bench, SOILS[name], 1e-8)
+        bench.near(f"{name}: the default, every step", *both(pressures(bench, SOILS[name], 1e-3), tight), TWO_PER_CENT, "kPa")
         if name != "loose, dry" or bench.quick:
             continue
-        _, middle = pressures(bench, SOILS[name], 1e-6)
-        bench.near(f"{name}: 1e-6, every step", middle, tight, TWO_PER_CENT, "kPa")
-        _, before = pressures(bench, SOILS[name], 1e-3, "forces")
-        worst = np.abs(before / tight - 1).max()
-        bench.below(f"{name}: less the worst error against all forces", -worst, VISIBLE)
+        bench.near(f"{name}: 1e-6, every step", *both(pressures(bench, SOILS[name], 1e-6), tight), TWO_PER_CENT, "kPa")
+        before, there = both(pressures(bench, SOILS[name], 1e-3, "forces"), tight)
+        bench.below(f"{name}: less the worst error against all forces", -np.abs(before / there - 1).max(), VISIBLE)
     return tables.rows(bench.here / "matrix.csv")
 
 

@@ -50,7 +50,7 @@ def run(build, case):
         path = pathlib.Path(folder) / "scene.nml"
         path.write_text(scene(case), encoding="utf-8")
         began = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run([str(pathlib.Path(build) / "host/mud_host"), str(path), "--output", folder],
+        done = subprocess.run([str(pathlib.Path(build) / "host/mud_host"), str(path), "--verbose", "--output", folder],
                               capture_output=True, text=True)
         if done.returncode:
             raise RuntimeError(f"{case}: {done.stderr.strip()}")
