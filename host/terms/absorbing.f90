@@ -5,7 +5,7 @@
 !> the boundary where it begins to act, undrained. The forces that it held before stay, so that only what departs from
 !> that state leaves as a wave. docs/theory/host.md section 7.4.
 module absorbing
-   use acting_places, only: facing_edges, acting_stages
+   use acting_places, only: facing_edges, acting_stages, held_in, TURN
    use archive, only: archive_t
    use boundary_conditions, only: prescribing_fixes
    use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
@@ -22,7 +22,7 @@ module absorbing
    use name_search, only: mesh_group, history_named, read_stages
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: domain_t, copy_state, mixture_density, pressures_at, law_of, COUPLED, UNDRAINED
-   use scene_parts, only: acts_in, place_of
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
    use texts, only: short, whole, LENGTH
@@ -127,10 +127,8 @@ contains
          integer :: e
 
          share_an_edge = .false.
-         associate (groups => model%domain%mesh%groups, others => acting_stages(model, b%action_t))
-            if (.not. any([(any(others == model%stages(e)%name) .and. any(acting_stages(model, a%action_t) == &
-                                                                         model%stages(e)%name), &
-                            e=1, size(model%stages))])) return
+         if (.not. any(acting_stages(model, a%action_t) .and. acting_stages(model, b%action_t))) return
+         associate (groups => model%domain%mesh%groups)
             do e = 1, size(groups(a%group)%edges, 2)
                share_an_edge = share_an_edge .or. any(groups(b%group)%edges(3, :) == groups(a%group)%edges(3, e))
             end do
@@ -152,23 +150,17 @@ contains
    subroutine look_at_supports(model, side)
       type(model_t), intent(in) :: model
       type(side_t), intent(in) :: side
-      logical, dimension(DISPLACEMENTS, size(model%domain%mesh%x, 2)) :: held
+      logical :: held(TURN, size(model%domain%mesh%x, 2))
       character(*), parameter :: WORDS(DISPLACEMENTS) = ['u_r', 'u_z']
       real(wp) :: extent(DISPLACEMENTS)
-      integer :: s, i, f
+      integer :: s, f
 
       associate (nodes => model%domain%mesh%groups(side%group)%nodes, x => model%domain%mesh%x, &
                  t6 => model%domain%mesh%t6)
          extent = [(maxval(x(f, nodes)) - minval(x(f, nodes)), f=1, DISPLACEMENTS)]
          do s = 1, size(model%stages)
             if (.not. acts(side, model, s)) cycle
-            held = .false.
-            do i = 1, size(model%fixes)
-               associate (fix => model%fixes(i))
-                  if (fix%field <= DISPLACEMENTS .and. acts_in(fix%stages, model%stages(s)%name)) &
-                     held(fix%field, model%domain%mesh%groups(fix%group)%nodes) = .true.
-               end associate
-            end do
+            held = held_in(model, s)
             do f = 1, DISPLACEMENTS
                ! Ground that is held throughout has no motion along this axis.
                if (.not. all(held(f, nodes)) .or. all(held(f, reshape(t6, [size(t6)])))) cycle
