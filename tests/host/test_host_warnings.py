@@ -79,6 +79,8 @@ def test_large_strains_are_told_once():
 
 DOUBTS = [
     ("tension in MUD", "p_w_slope = -9.81", "p_w = 30", ["tensile at", "points of MUD"]),
+    ("pressure and stress in two", "p_w_slope = -9.81 ", "p_w_slope = -9.81 /\n&initial p_w_slope = -9.81 ",
+     ["scene.nml:9: this &initial of group 'all' has no effect", "Write them in one"]),
     ("surface below the mesh", "surface = 0", "surface = -1", ["surface = -1 m lies below", "'all' at 0 m"]),
     ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8",
      ["intrinsic = 1.1e-8 of &permeability", "conductivity"]),
