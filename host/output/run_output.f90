@@ -15,6 +15,7 @@ module run_output
    use run_folder, only: folder_observer_t
    use run_observer, only: observers_t
    use run_summary, only: summary_observer_t
+   use strain_alarm, only: strain_alarm_t
    use water_balance, only: water_alarm_t
    implicit none (type, external)
    private
@@ -36,6 +37,7 @@ contains
       call observers%add(contact_alarm_t())
       call observers%add(pressure_alarm_t())
       call observers%add(cycles_alarm_t())
+      call observers%add(strain_alarm_t())
       call observers%add(localisation_observer_t())
       call observers%add(ledger_observer_t())
       call observers%add(water_alarm_t())

@@ -153,6 +153,7 @@ contains
       real(wp) :: top
       integer :: i
 
+      call look_at_replaced_initials(model)
       if (tension%points > 0) call print_warning('The initial effective stress is tensile at '// &
          whole(tension%points)//' points of MUD, most at z = '//short(tension%z)//' m ('//short(tension%largest)// &
          ' kPa): sand carries none, and the material starts from what it can carry, without balance; correct '// &
@@ -170,6 +171,25 @@ contains
          end associate
       end do
    end subroutine look_at_initials
+
+   !> An &initial of whose nodes and elements later ones have every one: keys of two do not add up.
+   subroutine look_at_replaced_initials(model)
+      type(model_t), intent(in) :: model
+      logical :: nodes(size(model%domain%mesh%x, 2)), elements(size(model%domain%region_of))
+      integer :: i
+
+      nodes = .false.
+      elements = .false.
+      do i = size(model%initials), 1, -1
+         associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
+            if (all(nodes(group%nodes)) .and. all(elements(group%elements))) call print_warning(place_of(one)// &
+               'this &initial of group '''//trim(one%group_name)//''' has no effect: later ones have all of it, '// &
+               'and of several the last one gives pressures, stress and velocity. Write them in one.')
+            nodes(group%nodes) = .true.
+            elements(group%elements) = .true.
+         end associate
+      end do
+   end subroutine look_at_replaced_initials
 
    !> Warns of boundary nodes at one place that no contact, tie or plate joins.
    subroutine look_at_slits(model)

@@ -57,8 +57,30 @@ def test_a_material_in_another_unit_is_refused():
               and len(done.stderr.splitlines()) == 1, done.stderr)
 
 
+def test_large_strains_are_told_once():
+    # A block under p, free to spread: strains (1 - nu^2) p/E along z in the plane, 9.6 and 10.56 %. With shear G = 4000
+    # kPa: tau/G/2 is a principal strain of 11 %. A second stage adds nothing.
+    block = """&scene name = 'b' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'm' young = 1e4 poisson = 0.25 /
+&region material = 'm' void_ratio = 0 /
+&stage name = 'one' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'two' analysis = 'static' duration = 1 dt = 1 /
+"""
+    pressed = "&fix group = 'left' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n" \
+              "&load group = 'top' kind = 'pressure' value = {} /\n"
+    sheared = "&fix group = 'all' field = 'u_z' /\n&fix group = 'bottom' field = 'u_r' /\n" \
+              "&load group = 'top' kind = 'shear_r' value = 880 /\n"
+    for more, strain in ((pressed.format(1024), ""), (pressed.format(1126.4), "10.56"), (sheared, "11")):
+        told = start("strained", block + more).stderr
+        check(f"{strain or 'nothing'} told", told.count("the ground is strained") == bool(strain)
+              and (f"one, time 1 s: the ground is strained by up to {strain} %" in told) == bool(strain), told)
+
+
 DOUBTS = [
     ("tension in MUD", "p_w_slope = -9.81", "p_w = 30", ["tensile at", "points of MUD"]),
+    ("pressure and stress in two", "p_w_slope = -9.81 ", "p_w_slope = -9.81 /\n&initial p_w_slope = -9.81 ",
+     ["scene.nml:9: this &initial of group 'all' has no effect", "Write them in one"]),
     ("surface below the mesh", "surface = 0", "surface = -1", ["surface = -1 m lies below", "'all' at 0 m"]),
     ("permeability", "intrinsic = 1e-11", "intrinsic = 1.1e-8",
      ["intrinsic = 1.1e-8 of &permeability", "conductivity"]),
