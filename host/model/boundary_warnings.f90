@@ -153,16 +153,15 @@ contains
       type(model_t), intent(in) :: model
       character(*), parameter :: OF_RUN = ' times of a &history are those of the run, not of a stage: its key '// &
                                           'stages counts them from stages.'
-      real(wp) :: starts(size(model%stages)), start, factor
-      integer :: i, s, n, dynamic
+      real(wp) :: start, factor
+      integer :: i, n, dynamic
 
-      starts = [(sum(model%stages(:s - 1)%duration), s=1, size(starts))]
       dynamic = findloc(has_inertia(model%stages%kind), .true., dim=1)
       do i = 1, size(model%actions)
          if (model%actions(i)%amplitude == 0) cycle
          associate (one => model%actions(i), h => model%amplitudes(model%actions(i)%amplitude))
             if (size(h%stages) > 0) cycle
-            start = max(one%from, starts(findloc(one%in_stage, .true., dim=1)))
+            start = max(one%from, model%stages(findloc(one%in_stage, .true., dim=1))%start)
             factor = amplitude_at(h, start)
             n = size(h%times)
             if (any(h%times < start .and. &
@@ -173,7 +172,7 @@ contains
             if (dynamic < 2) cycle
             ! What acts from that stage on alone is told by its first factor.
             if (.not. (one%in_stage(dynamic) .and. any(one%in_stage(:dynamic - 1)))) cycle
-            start = starts(dynamic)
+            start = model%stages(dynamic)%start
             if (h%times(n) <= start .and. h%times(n) - h%times(1) <= BRIEF*start .and. &
                 .not. abs(h%values(n) - h%values(1)) > 0.0_wp .and. any(abs(h%values - h%values(1)) > 0.0_wp)) &
                call print_warning(place_of(one)//'history '''//trim(h%name)//''' is over at '//short(h%times(n))// &

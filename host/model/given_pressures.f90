@@ -20,21 +20,20 @@ contains
    !> regions must be known; coordinates: mean of the vertices.
    subroutine add_centers(domain)
       type(domain_t), intent(inout) :: domain
+      logical :: closed(size(domain%region_of))   !< Whether the fluids of an element stay in it.
       real(wp), allocatable :: x(:, :)
       integer :: e, n
 
-      allocate (domain%center(size(domain%mesh%t6, 2)), source=0)
-      if (.not. any(domain%regions%drainage == UNDRAINED)) return
+      closed = [(domain%regions(domain%region_of(e))%drainage == UNDRAINED, e=1, size(closed))]
       n = size(domain%mesh%x, 2)
-      do e = 1, size(domain%center)
-         if (domain%regions(domain%region_of(e))%drainage /= UNDRAINED) cycle
+      allocate (domain%center(size(closed)), source=0)
+      allocate (x(2, n + count(closed)))
+      x(:, :n) = domain%mesh%x
+      do e = 1, size(closed)
+         if (.not. closed(e)) cycle
          n = n + 1
          domain%center(e) = n
-      end do
-      allocate (x(2, n))
-      x(:, :size(domain%mesh%x, 2)) = domain%mesh%x
-      do e = 1, size(domain%center)
-         if (domain%center(e) > 0) x(:, domain%center(e)) = sum(domain%mesh%x(:, domain%mesh%t6(:3, e)), dim=2)/3
+         x(:, n) = sum(domain%mesh%x(:, domain%mesh%t6(:3, e)), dim=2)/3
       end do
       call move_alloc(x, domain%mesh%x)
    end subroutine add_centers

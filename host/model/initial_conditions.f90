@@ -25,6 +25,7 @@ module initial_conditions
       type(initial_t), allocatable :: initials(:)   !< Those of the scene, after them one that gives nothing.
       integer, allocatable :: of(:)                 !< Place of that of every element in them.
       logical, allocatable :: present(:)            !< (elements) In the first stage.
+      logical :: alike = .true.                     !< One region, one &initial: what lies above a point is as it is.
       type(strips_t) :: strips
    end type ground_t
 contains
@@ -168,9 +169,12 @@ contains
          associate (elements => model%domain%mesh%groups(model%initials(i)%group)%elements)
             ground%of(elements) = i
          end associate
+         ground%alike = ground%alike .and. .not. model%initials(i)%follows
       end do
       ground%present = present
-      ground%strips = new_strips(model%domain%mesh)
+      ground%alike = ground%alike .and. all(present) .and. size(model%domain%regions) == 1 .and. &
+                     all(ground%of == ground%of(1))
+      if (.not. ground%alike) ground%strips = new_strips(model%domain%mesh)
    end function ground_at_start
 
    !> Effective stress, tension positive.
@@ -210,7 +214,10 @@ contains
       integer :: i, last
 
       associate (initial => ground%initials(ground%of(element)))
-         if (initial%follows) then
+         if (ground%alike) then
+            ends = [x(2), initial%surface]
+            of = [element]
+         else if (initial%follows) then
             call pieces_above(model%domain%mesh, ground%strips, x, ends=ends, element=of)
          else
             call pieces_above(model%domain%mesh, ground%strips, x, initial%surface, ends, of)

@@ -17,16 +17,15 @@ contains
       type(mesh_t), intent(in) :: mesh
       character(*), intent(in) :: name, place   !< Place: where the scene says it.
       type(fault_t), intent(inout) :: fault
-      integer :: i
 
       group = find_group(mesh, trim(name))
       if (group == 0) call raise(fault, EXIT_GROUP, place//'the mesh has no group '''//trim(name)//'''; it has'// &
-                                 listed([(mesh%groups(i)%name, i=1, size(mesh%groups))])//'.')
+                                 listed(mesh%groups%name)//'.')
       if (group == 0) return
       if (size(mesh%groups(group)%nodes) == 0) then
          call raise(fault, EXIT_GROUP, place//'the group '''//trim(name)//''' of the mesh is empty: no element, '// &
                     'edge or point has its physical number; assign it again in Gmsh.')
-      else if (count([(mesh%groups(i)%name == name, i=1, size(mesh%groups))]) > 1) then
+      else if (count(mesh%groups%name == name) > 1) then
          call raise(fault, EXIT_GROUP, place//'the mesh has groups '''//trim(name)//''' of several dimensions '// &
                     '(points, curves, surfaces), and this could mean each of them; give them names of their own.')
       else

@@ -141,6 +141,9 @@ contains
             'step_ends of &stage '//trim(stage%name)//' needs steps = ''given'', and times in '//trim(ends)// &
             ' that ascend [s].')
       end if
+      associate (last => size(model%stages))
+         if (last > 0) stage%start = model%stages(last)%start + model%stages(last)%duration
+      end associate
       model%stages = [model%stages, stage]
    end subroutine build_stage
 
@@ -199,7 +202,7 @@ contains
       allocate (times(0), values(0), arcs(0))
       do s = 1, size(named)
          if (.not. named(s)) cycle
-         start = sum(stages(:s - 1)%duration)
+         start = stages(s)%start
          i = size(times)
          first = 1
          if (i > 0) then

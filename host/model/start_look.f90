@@ -135,16 +135,16 @@ contains
    subroutine look_at_held_water(model)
       type(model_t), intent(in) :: model
       integer, parameter :: TIMES = 32   !< At which the history is asked in a stage.
-      real(wp) :: start, factors(0:TIMES)
+      real(wp) :: factors(0:TIMES)
       logical :: held(size(model%domain%regions))
       character(60) :: why
       integer :: s, k
 
       if (.not. model%domain%fluids%rho_w*model%domain%gravity > 0.0_wp) return
-      start = 0.0_wp
       do s = 1, size(model%stages)
-         factors = [(factor_at(model, model%gravity_amplitude, start + k*model%stages(s)%duration/TIMES), k=0, TIMES)]
-         start = start + model%stages(s)%duration
+         associate (stage => model%stages(s))
+            factors = [(factor_at(model, model%gravity_amplitude, stage%start + k*stage%duration/TIMES), k=0, TIMES)]
+         end associate
          held = model%domain%regions%with_w .and. model%domain%regions%drainage == DRAINED
          why = 'drained regions keep the pressures of the start'
          if (.not. has_rates(model%stages(s)%kind)) then
@@ -224,10 +224,9 @@ contains
 
       if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%hold .or. fix%amplitude == 0) return
       if (size(model%amplitudes(fix%amplitude)%times) < 2) return
-      start = 0.0_wp
       associate (h => model%amplitudes(fix%amplitude))
          do s = 1, size(model%stages)
-            if (s > 1) start = start + model%stages(s - 1)%duration
+            start = model%stages(s)%start
             if (.not. (fix%in_stage(s) .and. has_inertia(model%stages(s)%kind))) cycle
             after = 0.0_wp
             i = count(h%times <= max(start, fix%from))
@@ -264,7 +263,7 @@ contains
       if (fix%field > DISPLACEMENTS .or. fix%acceleration .or. fix%hold .or. fix%of_body) return
       do s = 1, size(model%stages) - 1
          if (.not. (model%stages(s)%zero_displacements .and. all(fix%in_stage(s:s + 1)))) cycle
-         zeroed = sum(model%stages(:s)%duration)
+         zeroed = model%stages(s + 1)%start
          if (fix%from >= zeroed - SPACINGS*spacing(zeroed) .or. fix%until <= zeroed + SPACINGS*spacing(zeroed)) cycle
          if (.not. abs(factor_at(model, fix%amplitude, zeroed))*max(abs(fix%value), abs(fix%value_slope)) > 0.0_wp) &
             cycle

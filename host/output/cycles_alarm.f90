@@ -122,7 +122,8 @@ contains
          call follow(factor, least, self%farthest(i), self%sense(i), self%turns(i))
       end do
       if (.not. any(self%counts)) return
-      call follow_ground(self, run%next%x(:DISPLACEMENTS, :) - self%origin, n)
+      call follow_ground(self, merge(run%next%x(:DISPLACEMENTS, :) - self%origin, 0.0_wp, &
+                                     spread(self%counts, 1, DISPLACEMENTS)), n)
       if (self%told .or. maxval(self%turns) <= MANY_REVERSALS) return
       self%told = .true.
       at = maxloc(self%turns, 1)
@@ -145,25 +146,15 @@ contains
    !> Counts the turns of displacements. When the largest one has doubled, turns before it are small and count no more.
    subroutine follow_ground(self, u, n)
       class(cycles_alarm_t), intent(inout) :: self
-      real(wp), intent(in) :: u(:, :)   !< (2, nodes) From the origin [m].
+      real(wp), intent(in) :: u(:, :)   !< (2, nodes) From the origin, 0 on ground that does not count [m].
       integer, intent(in) :: n          !< Histories before them.
-      real(wp) :: largest
-      integer :: i, k
 
-      largest = maxval(maxval(abs(u), 1), mask=self%counts)
-      if (largest > 2.0_wp*self%largest) then
-         self%largest = largest
+      if (maxval(abs(u)) > 2.0_wp*self%largest) then
+         self%largest = maxval(abs(u))
          self%turns(n + 1:) = 0
       end if
-      do i = 1, size(u, 2)
-         if (.not. self%counts(i)) cycle
-         do k = 1, size(u, 1)
-            associate (at => n + size(u, 1)*(i - 1) + k)
-               call follow(u(k, i), LEAST_SHARE*max(largest, self%largest), self%farthest(at), self%sense(at), &
-                           self%turns(at))
-            end associate
-         end do
-      end do
+      call follow([u], LEAST_SHARE*max(maxval(abs(u)), self%largest), self%farthest(n + 1:), self%sense(n + 1:), &
+                  self%turns(n + 1:))
    end subroutine follow_ground
 
    !> Whether a history acts in the stage under way; one that no action names, as that of gravity or of a wave, does in

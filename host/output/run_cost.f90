@@ -18,6 +18,7 @@ contains
    function size_of_run(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
+      real(wp) :: points   !< Numbers of their states.
       integer :: f
 
       associate (field => run%dofs%field)
@@ -26,19 +27,15 @@ contains
             if (any(field == f)) text = text//', '//whole(count(field == f))//trim(merge(' p_w', ' p_c', f == AT_P_W))
          end do
       end associate
-      text = text//'); state of the points '//megabytes(of_points(run))//', matrices of the elements '// &
+      ! Before and after the step.
+      associate (s => run%state)
+         points = 2.0_wp*(size(s%state) + size(s%stress) + size(s%e) + size(s%s) + size(s%s_rate))
+      end associate
+      text = text//'); state of the points '//megabytes(points)//', matrices of the elements '// &
              megabytes(1.0_wp*size(run%assembly%k))//', matrix '//megabytes(1.0_wp*size(run%pattern%col))
       if (run%system%sparse%entries > 0.0_wp) text = text//', its factors '//megabytes(run%system%sparse%entries)
       text = text//'.'
    end function size_of_run
-
-   !> Numbers of the state of all points, before and after the step.
-   pure real(wp) function of_points(run)
-      type(run_t), intent(in) :: run
-
-      of_points = 2.0_wp*(size(run%state%state) + size(run%state%stress) + size(run%state%e) + size(run%state%s) &
-                          + size(run%state%s_rate))
-   end function of_points
 
    !> So many numbers.
    function megabytes(numbers) result(text)

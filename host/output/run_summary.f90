@@ -81,16 +81,17 @@ contains
       class(summary_observer_t), intent(inout) :: self
       type(run_t), intent(inout) :: run
       real(wp) :: x(FIELDS)
-      integer :: i, f
+      integer :: i
 
       do i = 1, size(run%model%output%points)
          x = values_at(run%model%output%points(i), run%state%x)
-         do f = 1, FIELDS
-            if (.not. abs(x(f)) > abs(self%peaks%value(f, i))) cycle
-            self%peaks%value(f, i) = x(f)
-            self%peaks%time(f, i) = run%state%time
-            self%peaks%dt(f, i) = run%scheme%dt
-         end do
+         associate (peaks => self%peaks)
+            where (abs(x) > abs(peaks%value(:, i)))
+               peaks%time(:, i) = run%state%time
+               peaks%dt(:, i) = run%scheme%dt
+               peaks%value(:, i) = x
+            end where
+         end associate
       end do
    end subroutine note_peaks
 

@@ -76,7 +76,7 @@ contains
       integer :: i
 
       scene%groups = scene%as_read
-      i = findloc([(scene%groups(i)%name == 'scene', i=1, size(scene%groups))], .true., dim=1)
+      i = findloc(scene%groups%name == 'scene', .true., dim=1)
       without = lower_case(texts_of(scene%groups(i), 'without'))
       scene%absent = pack(without, [(.not. is_present(scene%groups, trim(without(i))), i=1, size(without))])
       do i = 1, size(without)

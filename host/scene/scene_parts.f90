@@ -57,6 +57,7 @@ module scene_parts
    type :: stage_t
       character(NAME_LENGTH) :: name = ''
       integer :: kind = 0                            !< Of generalised_alpha.
+      real(wp) :: start = 0.0_wp                     !< When the stages before it end [s].
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = NEVER
       logical :: controlled = .false.                !< Steps are chosen from their error.
       real(wp) :: step_tolerance = 0.0_wp            !< Of those steps [-].

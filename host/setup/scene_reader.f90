@@ -40,14 +40,14 @@ contains
       type(fault_t), intent(inout) :: fault
       character(6), parameter :: ONCE(3) = ['scene ', 'mesh  ', 'fluids'], NEEDED(4) = ['scene ', 'mesh  ', 'region', &
                                                                                         'stage ']
-      integer :: i, k
+      integer :: k
 
       do k = 1, size(ONCE)
-         if (count([(groups(i)%name == ONCE(k), i=1, size(groups))]) > 1) call raise(fault, EXIT_INPUT, trim(file)// &
+         if (count(groups%name == ONCE(k)) > 1) call raise(fault, EXIT_INPUT, trim(file)// &
             ': &'//trim(ONCE(k))//' is given more than once; keep one.')
       end do
       do k = 1, size(NEEDED)
-         if (.not. any([(groups(i)%name == NEEDED(k), i=1, size(groups))])) call raise(fault, EXIT_INPUT, trim(file)// &
+         if (.not. any(groups%name == NEEDED(k))) call raise(fault, EXIT_INPUT, trim(file)// &
             ': the group &'//trim(NEEDED(k))//' is missing; mud_host --template prints every group.')
       end do
    end subroutine check_counts

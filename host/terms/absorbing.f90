@@ -181,7 +181,7 @@ contains
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       type(linear_forces_t) :: none
-      integer :: i, e, f
+      integer :: i
 
       if (fault%code /= 0) return
       allocate (none%row(0), none%column(0), none%value(0))
@@ -194,13 +194,9 @@ contains
             allocate (side%held(problem%dofs%n), source=.false.)
             allocate (side%incoming(problem%dofs%n), side%carried(problem%dofs%n), source=0.0_wp)
             if (side%repeats) cycle
-            do e = 1, size(side%edges, 2)
-               do f = 1, DISPLACEMENTS
-                  associate (unknowns => problem%dofs%of(f, side%edges(:, e)))
-                     side%held(pack(unknowns, unknowns > 0)) = .true.
-                  end associate
-               end do
-            end do
+            associate (unknowns => problem%dofs%of(:DISPLACEMENTS, [side%edges]))
+               side%held(pack(unknowns, unknowns > 0)) = .true.
+            end associate
          end associate
       end do
    end subroutine begin_run
