@@ -4,6 +4,7 @@
 module degrees_of_freedom
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use element_equations, only: element_size
+   use element_sums, only: LAST_U
    use porous_domain, only: domain_t
    implicit none (type, external)
    private
@@ -76,8 +77,8 @@ contains
             do i = 1, 6
                dofs%element(2*i - 1:2*i, e) = dofs%of(:DISPLACEMENTS, node(i))
             end do
-            if (region%with_w) dofs%element(13:12 + n_p, e) = dofs%of(AT_P_W, carriers(:n_p))
-            if (region%with_c) dofs%element(13 + n_p:12 + 2*n_p, e) = dofs%of(AT_P_C, carriers(:n_p))
+            if (region%with_w) dofs%element(LAST_U + 1:LAST_U + n_p, e) = dofs%of(AT_P_W, carriers(:n_p))
+            if (region%with_c) dofs%element(LAST_U + n_p + 1:LAST_U + 2*n_p, e) = dofs%of(AT_P_C, carriers(:n_p))
          end associate
       end do
    end subroutine number_unknowns

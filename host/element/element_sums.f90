@@ -8,11 +8,12 @@ module element_sums
    implicit none (type, external)
    private
    public :: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, residual_of, matrix_of
+   public :: LAST_U
 
    integer, parameter :: NODES = 6
    integer, parameter :: U_R = 1, U_Z = 2, WATER = 3, SUCTION = 4   !< Fields of an element.
    integer, parameter :: FORCES = U + 2   !< Places of stress and force, before those of the fluids.
-   integer, parameter :: LAST_U = 2*NODES
+   integer, parameter :: LAST_U = 2*NODES   !< Displacements of an element, the first of its unknowns.
 
    !> Sums of the points of an element.
    type :: sums_t
