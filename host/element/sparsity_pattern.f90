@@ -10,7 +10,7 @@ module sparsity_pattern
       integer :: n = 0
       integer, allocatable :: row(:)      !< (n + 1) where every row begins
       integer, allocatable :: col(:)      !< Ascending in every row.
-      integer, allocatable :: before(:)   !< (elements + 1) Entries of the square matrices of elements before an element.
+      integer, allocatable :: before(:)   !< (elements + 1) Entries of the square matrices of the elements before one.
       integer, allocatable :: place(:)    !< The entry that every one of these adds to.
    end type pattern_t
 contains
