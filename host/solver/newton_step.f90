@@ -167,41 +167,60 @@ contains
       end associate
    end subroutine follow_error
 
-   !> Makes the residual of the iterate, with minus sign in at%rhs, and its slopes where they are asked for.
-   !> log%outcome: CONTACT_FAILED, MATERIAL_FAILED where these refuse it.
+   !> Makes the residual of the iterate, with minus sign in at%rhs, and its slopes where they are asked for. log%outcome
+   !> as of form_equations.
    subroutine make_equations(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
-      real(wp) :: spent
 
-      associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
-                 system => solution%system, pattern => solution%pattern, scheme => solution%scheme, &
-                 tolerance => solution%newton%tolerance, log => solution%log)
-         spent = 0.0_wp
-         call add_elapsed(system%seconds(T_REST), at%t0)
-         if (.not. update_contacts(system, solution%dofs, pattern, old%x + scheme%l_f*(new%x - old%x), at%with_slopes, &
-                                   assembly)) then
-            log%outcome = CONTACT_FAILED
-            return
-         end if
-         call add_elapsed(system%seconds(T_CONTACT), at%t0)
-         call assemble(solution%domain, solution%dofs, pattern, scheme, old, new, at%with_slopes, assembly)
-         system%n_pass = system%n_pass + 1
-         log%rate_evaluations = log%rate_evaluations + assembly%rate_evaluations
-         call add_elapsed(spent, at%t0)
-         system%seconds(T_MATERIAL) = system%seconds(T_MATERIAL) + spent*assembly%material
-         system%seconds(T_ASSEMBLY) = system%seconds(T_ASSEMBLY) + spent*(1 - assembly%material)
-         if (assembly%bad_element > 0) then
-            log%outcome = MATERIAL_FAILED
-            return
-         end if
-         call add_what_acts(scheme, at%with_slopes, at%touched, solution, at%rhs, at%t0)
-         assembly%unresolved = at%rounded(1)/tolerance
-         if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1)) &
-                                                               /tolerance
+      associate (assembly => solution%assembly, system => solution%system, log => solution%log)
+         call form_equations(solution%scheme, at%with_slopes, at%touched, solution, at%rhs, at%t0, log%outcome)
+         if (log%outcome /= CONVERGED) return
+         system%reaction = -at%rhs
+         assembly%unresolved = at%rounded(1)
+         if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1))
+         assembly%unresolved = assembly%unresolved/solution%newton%tolerance
          if (log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
       end associate
    end subroutine make_equations
+
+   !> Forms the equations of a scheme between both states: contacts, elements and what acts beside them. outcome:
+   !> CONTACT_FAILED or MATERIAL_FAILED where these refuse the state, else CONVERGED.
+   subroutine form_equations(scheme, slopes, touched, solution, rhs, t0, outcome)
+      type(scheme_t), intent(in) :: scheme
+      logical, intent(in) :: slopes                     !< The matrix is asked for.
+      real(wp), allocatable, intent(in) :: touched(:)   !< Forces of contacts before the step, if they are asked for.
+      type(solution_t), intent(inout) :: solution
+      real(wp), intent(out) :: rhs(:)                   !< The residual with minus sign [kN, m3/s]. (unknowns)
+      real(wp), intent(inout) :: t0                     !< Wall clock when the present part of the work began [s].
+      integer, intent(out) :: outcome
+      real(wp) :: spent
+
+      associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
+                 system => solution%system, pattern => solution%pattern)
+         outcome = CONVERGED
+         spent = 0.0_wp
+         call add_elapsed(system%seconds(T_REST), t0)
+         ! At the old level no force of contacts follows the unknowns.
+         if (.not. update_contacts(system, solution%dofs, pattern, old%x + scheme%l_f*(new%x - old%x), &
+                                   slopes .and. scheme%l_f > 0.0_wp, assembly)) then
+            outcome = CONTACT_FAILED
+            return
+         end if
+         call add_elapsed(system%seconds(T_CONTACT), t0)
+         call assemble(solution%domain, solution%dofs, pattern, scheme, old, new, slopes, assembly)
+         system%n_pass = system%n_pass + 1
+         solution%log%rate_evaluations = solution%log%rate_evaluations + assembly%rate_evaluations
+         call add_elapsed(spent, t0)
+         system%seconds(T_MATERIAL) = system%seconds(T_MATERIAL) + spent*assembly%material
+         system%seconds(T_ASSEMBLY) = system%seconds(T_ASSEMBLY) + spent*(1 - assembly%material)
+         if (assembly%bad_element > 0) then
+            outcome = MATERIAL_FAILED
+            return
+         end if
+         call add_what_acts(scheme, slopes, touched, solution, rhs, t0)
+      end associate
+   end subroutine form_equations
 
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
    !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.
@@ -382,8 +401,8 @@ contains
          if (allocated(touched)) without(:) = assembly%residual
          if (allocated(system%contacts)) then
             call add_elapsed(system%seconds(T_REST), t0)
-            call system%contacts%add(solution%pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
-                                     assembly%values)
+            call system%contacts%add(solution%pattern, scheme%l_f, slopes .and. scheme%l_f > 0.0_wp, &
+                                     assembly%residual, assembly%scale, assembly%values)
             call add_elapsed(system%seconds(T_CONTACT), t0)
          end if
          rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
@@ -404,7 +423,6 @@ contains
             end where
          end if
          rhs = rhs - assembly%residual
-         system%reaction = -rhs
       end associate
    end subroutine add_what_acts
 
@@ -415,7 +433,8 @@ contains
       type(solution_t), intent(inout) :: solution
       type(constraint_t) :: held
       type(scheme_t) :: scheme
-      real(wp), allocatable :: rhs(:), dx(:)
+      real(wp), allocatable :: untouched(:)
+      real(wp) :: rhs(solution%dofs%n), dx(solution%dofs%n), t0
       integer :: status, i, f, steps
 
       solution%log = log_t()
@@ -432,20 +451,9 @@ contains
          assembly%air = .false.
          state%a = 0.0_wp
          work%a = 0.0_wp
-         allocate (rhs(solution%dofs%n), dx(solution%dofs%n))
-         if (.not. update_contacts(system, solution%dofs, pattern, state%x, .false., assembly)) then
-            log%outcome = CONTACT_FAILED
-            return
-         end if
-         call assemble(solution%domain, solution%dofs, pattern, scheme, state, work, .true., assembly)
-         if (assembly%bad_element > 0) then
-            log%outcome = MATERIAL_FAILED
-            return
-         end if
-         call add_forces(scheme, .true., solution)
-         if (allocated(system%contacts)) call system%contacts%add(pattern, 0.0_wp, .false., assembly%residual, &
-                                                                  assembly%scale, assembly%values)
-         rhs = held%load_0 - held%offset - assembly%residual
+         t0 = clock()
+         call form_equations(scheme, .true., untouched, solution, rhs, t0, log%outcome)
+         if (log%outcome /= CONVERGED) return
          call constrain(solution%dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
          if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
          system%analysed = .true.
@@ -459,7 +467,7 @@ contains
             return
          end if
          do i = 1, size(state%a, 2)
-            do f = 1, 2
+            do f = 1, DISPLACEMENTS
                if (solution%dofs%of(f, i) > 0) state%a(f, i) = dx(solution%dofs%of(f, i))
             end do
          end do
@@ -473,23 +481,20 @@ contains
       type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads, load_1 become them.
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
       type(scheme_t) :: scheme
-      real(wp), allocatable :: touched(:)
+      real(wp), allocatable :: untouched(:)
       real(wp) :: t0
+      integer :: outcome
 
-      associate (state => solution%state, work => solution%next, pattern => solution%pattern, &
-                 constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
+      associate (constraint => solution%constraint)
          t0 = clock()
          allocate (forces(solution%dofs%n), source=0.0_wp)
          scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
          constraint%load_1 = constraint%load_0
-         assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
+         solution%assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
          call begin_passes(scheme, control_t(), solution)
-         good = update_contacts(system, solution%dofs, pattern, state%x, .false., assembly)
-         if (good) call assemble(solution%domain, solution%dofs, pattern, scheme, state, work, .false., assembly)
-         if (good) good = assembly%bad_element == 0
-         if (.not. good) return
-         call add_what_acts(scheme, .false., touched, solution, forces, t0)
-         where (constraint%fixed .or. solution%dofs%field > DISPLACEMENTS) forces = 0.0_wp
+         call form_equations(scheme, .false., untouched, solution, forces, t0, outcome)
+         good = outcome == CONVERGED
+         if (good) where (constraint%fixed .or. solution%dofs%field > DISPLACEMENTS) forces = 0.0_wp
       end associate
    end function unbalanced_forces
 
