@@ -15,7 +15,6 @@ module absorbing
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
-   use linear_forces, only: linear_forces_t
    use material_point, only: material_t, response_t, batch_report_t
    use model_types, only: model_t, problem_t, action_t, factor_at
    use name_search, only: mesh_group, history_named
@@ -24,6 +23,7 @@ module absorbing
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
+   use springs, only: linear_forces_t
    use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)

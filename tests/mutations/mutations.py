@@ -368,7 +368,7 @@ REGIONS = [
 ]
 
 # What the field does to a boundary: (title, (file below host, text that stands there once, its replacement), ...).
-LIMITS, BALANCE, STAGED = "solver/limited_pressures.f90", "element/porous_balance.f90", "terms/staging.f90"
+LIMITS, BALANCE, STAGED = "solver/prescribed_values.f90", "element/porous_balance.f90", "terms/staging.f90"
 STRENGTHS, STEP, FRICTION = "terms/strength.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
 
 FIELD = [
