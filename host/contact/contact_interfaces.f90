@@ -9,11 +9,10 @@ module contact_interfaces
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, &
                               slid_work
    use contact_response, only: nodal_forces_t
-   use contact_plate, only: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
+   use contact_plate, only: plate_response_t, new_plate_response, gather_on_plate, force_on_plate, &
+                            new_spring_result, evaluate_springs, lengths_of_nodes
    use plate_motion, only: plate_motion_t, plate_positions
-   use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
-   use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, &
-                            CONTACT_OK
+   use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
    use unknown_fields, only: DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, place_of
@@ -147,7 +146,7 @@ contains
       one%slave = boundary
       one%master = boundary
       one%plate = plate
-      one%geometry = spring_geometry(size(boundary%node))
+      one%geometry = contact_geometry_t(slave_nodes=size(boundary%node), master_nodes=size(boundary%node))
       one%spring = penalty*lengths_of_nodes(boundary%edges, boundary%x0)
       one%result = new_spring_result(one%geometry, one%spring)
       one%probe = one%result

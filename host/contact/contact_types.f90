@@ -1,12 +1,11 @@
 ! SPDX-License-Identifier: MIT
 !> Options and status of the contact kernels, and what a status says in words.
 module contact_types
-   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, PI
    implicit none (type, external)
    private
    public :: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
-   public :: contact_options_t, has_friction, contact_status_t, contact_message, is_finite
+   public :: contact_options_t, has_friction, contact_status_t, contact_message
    public :: CONTACT_OK, CONTACT_BAD_EDGE, CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, &
              CONTACT_NO_PROJECTION
 
@@ -41,8 +40,6 @@ module contact_types
       logical :: master = .false.     !< The edge or node is one of the master.
       real(wp) :: value = 0.0_wp      !< Value that was found.
    end type contact_status_t
-
-   integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
 contains
    !> Whether a contact has friction.
    pure logical function has_friction(options)
@@ -83,11 +80,4 @@ contains
          text = 'contact: no fault'
       end select
    end subroutine contact_message
-
-   !> True if x is neither NaN nor infinite; by the bits, which neither traps nor costs anything.
-   pure elemental logical function is_finite(x)
-      real(wp), intent(in) :: x
-
-      is_finite = iand(transfer(x, EXPONENT_BITS), EXPONENT_BITS) /= EXPONENT_BITS
-   end function is_finite
 end module contact_types
