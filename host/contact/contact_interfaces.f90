@@ -214,10 +214,8 @@ contains
    function message(self) result(text)
       class(contacts_t), intent(in) :: self
       character(:), allocatable :: text
-      character(400) :: words
 
-      call contact_message(self%status, words)
-      text = trim(words)
+      text = contact_message(self%status)
    end function message
 
    !> Evaluates the contacts without slopes, into `probe` of every interface that acts: the outcome of the last

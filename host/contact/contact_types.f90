@@ -2,6 +2,7 @@
 !> Options and status of the contact kernels, and what a status says in words.
 module contact_types
    use kinds, only: wp, PI
+   use texts, only: whole
    implicit none (type, external)
    private
    public :: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
@@ -48,36 +49,33 @@ contains
       has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
    end function has_friction
 
-   !> A status in words: what, where, the value, what is allowed and what to do. Cut to the length of the text.
-   pure subroutine contact_message(status, text)
+   !> A status in words: what, where, the value, what is allowed and what to do.
+   pure function contact_message(status) result(text)
       type(contact_status_t), intent(in) :: status
-      character(*), intent(out) :: text
-      character(24) :: value
-      character(40) :: where
+      character(:), allocatable :: text
+      character(:), allocatable :: value
+      character(13) :: digits
 
-      write (value, '(es13.6)') status%value
-      value = adjustl(value)
-      write (where, '(a,i0,2a)') merge('node ', 'edge ', any(status%code == [CONTACT_NOT_FINITE, &
-         CONTACT_BAD_RADIUS])), status%index, ' of the ', trim(merge('master', 'slave ', status%master))//' surface'
-      text = 'contact: '//where
+      write (digits, '(es13.6)') status%value
+      value = trim(adjustl(digits))
+      text = 'contact: '//merge('node', 'edge', any(status%code == [CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS]))// &
+             ' '//whole(status%index)//' of the '//trim(merge('master', 'slave ', status%master))//' surface'
       select case (status%code)
       case (CONTACT_BAD_EDGE)
-         text = trim(text)//' names node '//trim(value)//': it must be one of the surface, in at most two edges, '// &
+         text = text//' names node '//value//': it must be one of the surface, in at most two edges, '// &
                 'and a middle node in one'
       case (CONTACT_NOT_FINITE)
-         text = trim(text)//' has a coordinate that is not finite: cut the step'
+         text = text//' has a coordinate that is not finite: cut the step'
       case (CONTACT_BAD_RADIUS)
-         text = trim(text)//' lies at radius '//trim(value)//' m, it must be >= 0: hold the nodes on the axis, or '// &
+         text = text//' lies at radius '//value//' m, it must be >= 0: hold the nodes on the axis, or '// &
                 'cut the step'
       case (CONTACT_DISTORTED_EDGE)
-         text = trim(text)//' is folded or has no length (least stretch '//trim(value)//', must be > 0): keep the '// &
-                'middle node within the middle half, or cut the step'
-      case (CONTACT_NO_PROJECTION)
-         text = trim(text)//' has a normal that misses the master edge opposite by '//trim(value)//' of its '// &
+         text = text//' is folded or has no length (least stretch '//value//', must be > 0): keep '// &
+                'the middle node within the middle half, or cut the step'
+      case default
+         text = text//' has a normal that misses the master edge opposite by '//value//' of its '// &
                 'length: the surfaces are too strongly curved for their distance; refine the edges, lower the '// &
                 'search radius or cut the step'
-      case default
-         text = 'contact: no fault'
       end select
-   end subroutine contact_message
+   end function contact_message
 end module contact_types

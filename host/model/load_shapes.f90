@@ -2,7 +2,7 @@
 !> Load vectors of a unit of every load, and the nodes that move together: made once, from the mesh.
 module load_shapes
    use acting_places, only: facing_edges
-   use degrees_of_freedom, only: tie, tie_pairs
+   use degrees_of_freedom, only: tie_pairs
    use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use given_pressures, only: edges_with_flow
    use kinds, only: wp
@@ -22,8 +22,10 @@ contains
 
       allocate (ties(FIELDS, size(model%domain%mesh%x, 2)), source=0)
       do i = 1, size(model%plates)
-         if (model%plates(i)%group > 0 .and. .not. model%plates(i)%penalty > 0.0_wp) &
-            call tie(model%domain%mesh%groups(model%plates(i)%group)%nodes, AT_U_Z, ties)
+         if (model%plates(i)%group == 0 .or. model%plates(i)%penalty > 0.0_wp) cycle
+         associate (nodes => model%domain%mesh%groups(model%plates(i)%group)%nodes)
+            ties(AT_U_Z, nodes) = minval(nodes)
+         end associate
       end do
       do i = 1, size(model%ties)
          call tie_pairs(model%ties(i)%pairs, merge(FIELDS, DISPLACEMENTS, model%ties(i)%pressures), ties)

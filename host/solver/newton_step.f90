@@ -1,5 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration.
+!> Newton's method and the stress integration ask each other for accuracy: an error of Newton's method below the
+!> tolerance of the stresses cannot be reached, since the substeps of a point change with its strain.
 !> docs/theory/host.md section 5.
 module newton_step
    use kinds, only: wp
@@ -10,11 +12,11 @@ module newton_step
    use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
+   use porous_domain, only: region_t
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
    use prescribed_values, only: constraint_t, constrain, choose_sides, loads_of_water
-   use stress_tolerance, only: follow_newton, is_tight
    use sparse_factors, only: analyse, factorise, solve_by_factors, SOLVED, SINGULAR, INACCURATE, NOT_FINITE
    use solution, only: solution_t
    use sparsity_pattern, only: place_of
@@ -22,13 +24,15 @@ module newton_step
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
    private
-   public :: take_step, start_accelerations, unbalanced_forces
+   public :: take_step, start_accelerations, unbalanced_forces, follow_newton, roughness
    public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, &
              EQUATIONS_LOST
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
                          CONTACT_FAILED = 5, EQUATIONS_LOST = 6
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Share of all contributions: no residual to begin with is smaller.
+   integer, parameter :: SCHEME_STAYS = 0
+   real(wp), parameter :: LEAST = 1.0e-10_wp          !< No stress is integrated to less [-].
    real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp    !< Share of an error to which the stresses of the next pass are
                                                       !< integrated.
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of an unknown: old, predicted, corrected, and their
@@ -172,6 +176,45 @@ contains
          call follow_newton(merge(STRESS_SHARE*min(error, 1.0_wp), tolerance, at%rough), solution%domain%regions)
       end associate
    end subroutine follow_error
+
+   !> Stresses are integrated to the tolerance of the material or to that of Newton's method, whichever
+   !> is smaller. docs/theory/host.md section 5.1.
+   subroutine follow_newton(tolerance, regions)
+      real(wp), intent(in) :: tolerance   !< Newton's [-].
+      type(region_t), intent(inout) :: regions(:)
+      real(wp) :: wanted
+      integer :: i
+
+      do i = 1, size(regions)
+         associate (law => regions(i)%law)
+            if (.not. law%tolerance > 0.0_wp) cycle
+            wanted = min(regions(i)%stress_tolerance, max(tolerance, LEAST))
+            if (abs(wanted - law%tolerance) > epsilon(1.0_wp)*wanted) call law%integrate_to(wanted, SCHEME_STAYS)
+         end associate
+      end do
+   end subroutine follow_newton
+
+   !> Largest tolerance of the stress integration; 0 without one. [-] docs/theory/host.md section 5.1.
+   pure real(wp) function roughness(regions)
+      type(region_t), intent(in) :: regions(:)
+      integer :: i
+
+      roughness = 0.0_wp
+      do i = 1, size(regions)
+         roughness = max(roughness, regions(i)%law%tolerance)
+      end do
+   end function roughness
+
+   !> Whether stresses are integrated to less than the material has. docs/theory/host.md section 5.1.
+   pure logical function is_tight(regions)
+      type(region_t), intent(in) :: regions(:)
+      integer :: i
+
+      is_tight = .false.
+      do i = 1, size(regions)
+         is_tight = is_tight .or. regions(i)%law%tolerance < 0.5_wp*regions(i)%stress_tolerance
+      end do
+   end function is_tight
 
    !> Makes the equations of a scheme between both states, of contacts, elements and what acts beside them: the residual
    !> with minus sign in at%rhs, and its slopes where at%with_slopes asks for them. outcome: CONTACT_FAILED or

@@ -19,7 +19,7 @@ module sparse_factors
    ! Places in UMFPACK's arrays (umfpack.h), from 1 here.
    integer, parameter :: CONTROLS = 20, INFOS = 90, CONTROL_STRATEGY = 6, CONTROL_REFINEMENT = 8, &
                          CONTROL_ORDERING = 11, INFO_RCOND = 68, INFO_LNZ = 44, INFO_UNZ = 45
-   real(c_double), parameter :: AMD = 1.0_c_double, METIS = 3.0_c_double, BEST = 4.0_c_double
+   real(c_double), parameter :: AMD = 1.0_c_double, METIS = 3.0_c_double
    !> Unknowns beyond which METIS saves more in the factors than its ordering costs: docs/theory/host.md section 6.
    integer, parameter :: MANY = 10000
    real(c_double), parameter :: STRATEGY_SYMMETRIC = 3.0_c_double
@@ -29,7 +29,6 @@ module sparse_factors
    real(wp), parameter :: RCOND_SINGULAR = 1.0e-13_wp
 
    type :: sparse_t
-      integer :: ordering = 1   !< 1 AMD or, of more than 10,000 unknowns, METIS; 2 AMD, 3 METIS, 4 the best of several.
       real(c_double) :: control(CONTROLS) = 0.0_c_double, info(INFOS) = 0.0_c_double
       integer(c_int), allocatable :: start(:), index(:)   !< The pattern, from 0.
       type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr
@@ -106,9 +105,7 @@ contains
       call umfpack_di_defaults(sparse%control)
       sparse%control(CONTROL_STRATEGY) = STRATEGY_SYMMETRIC
       sparse%control(CONTROL_REFINEMENT) = 0.0_c_double
-      associate (orderings => [merge(METIS, AMD, size(row) - 1 > MANY), AMD, METIS, BEST])
-         sparse%control(CONTROL_ORDERING) = orderings(sparse%ordering)
-      end associate
+      sparse%control(CONTROL_ORDERING) = merge(METIS, AMD, size(row) - 1 > MANY)
       status = merge(SOLVED, FAILED, umfpack_di_symbolic(size(row) - 1, size(row) - 1, sparse%start, sparse%index, &
                                                          c_null_ptr, sparse%symbolic, sparse%control, sparse%info) == 0)
       sparse%n_symbolic = sparse%n_symbolic + 1
