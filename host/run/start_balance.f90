@@ -111,32 +111,33 @@ contains
    subroutine let_go_of_held(model, forces)
       type(model_t), intent(in) :: model
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
-      integer :: i, k, at
+      integer :: i, f
 
       do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
+         associate (fix => model%fixes(i))
             if (fix%field > DISPLACEMENTS .or. .not. acts_in(fix%stages, model%stages(1)%name)) cycle
-            do k = 1, size(nodes)
-               at = model%dofs%of(fix%field, nodes(k))
-               if (at > 0) forces(at) = 0.0_wp
-            end do
+            call let_go(fix%field, model%domain%mesh%groups(fix%group)%nodes)
          end associate
       end do
       do i = 1, size(model%actions)
          associate (one => model%actions(i))
             if (.not. one%damps .or. all(acting_stages(model, one) /= model%stages(1)%name)) cycle
-            associate (nodes => model%domain%mesh%groups(one%group)%nodes)
-               do k = 1, size(nodes)
-                  do at = 1, DISPLACEMENTS
-                     if (model%dofs%of(at, nodes(k)) > 0) forces(model%dofs%of(at, nodes(k))) = 0.0_wp
-                  end do
-               end do
-            end associate
+            do f = 1, DISPLACEMENTS
+               call let_go(f, model%domain%mesh%groups(one%group)%nodes)
+            end do
          end associate
       end do
-      do i = 1, size(forces)
-         if (any(model%domain%bodies == model%dofs%node(i))) forces(i) = 0.0_wp
+      do f = 1, DISPLACEMENTS
+         call let_go(f, model%domain%bodies)
       end do
+   contains
+      subroutine let_go(field, nodes)
+         integer, intent(in) :: field, nodes(:)
+
+         associate (at => model%dofs%of(field, nodes))
+            forces(pack(at, at > 0)) = 0.0_wp
+         end associate
+      end subroutine let_go
    end subroutine let_go_of_held
 
    !> Adds what contacts press with, and every load at time 0, that leaves less without balance.

@@ -41,14 +41,25 @@ contains
          next = min(next, straight_until(run%model%amplitudes(i), now, close, min(next, now + reach), &
                                          CHORD_SHARE*run%stage%step_tolerance))
       end do
-      do i = 1, size(run%model%fixes)
-         if (.not. acts_in(run%model%fixes(i)%stages, run%stage%name)) cycle
-         if (run%model%fixes(i)%from > now + close) next = min(next, run%model%fixes(i)%from)
-         if (run%model%fixes(i)%until > now + close) next = min(next, run%model%fixes(i)%until)
-      end do
+      associate (times => times_of_supports(run))
+         next = min(next, minval(times, mask=times > now + close))
+      end associate
       if (run%stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
          + run%stage%output_dt*(aint((now - run%at%t_start + close)/run%stage%output_dt) + 1))
    end function next_time
+
+   !> Times at which supports of the stage come and go [s].
+   pure function times_of_supports(run) result(times)
+      type(run_t), intent(in) :: run
+      real(wp), allocatable :: times(:)
+      integer :: i
+
+      associate (fixes => run%model%fixes)
+         associate (acts => [(acts_in(fixes(i)%stages, run%stage%name), i=1, size(fixes))])
+            times = [pack(fixes%from, acts), pack(fixes%until, acts)]
+         end associate
+      end associate
+   end function times_of_supports
 
    !> End of a given step: as late as it is asked for, unless it would jump over a kink of a history of known shape, a
    !> whole segment of another, or all the time in which a support acts; then where a controlled step would end [s].
@@ -136,12 +147,7 @@ contains
                is_break = is_break .or. abs(turn) > stage%step_tolerance*(maxval(h%values) - minval(h%values))
             end associate
          end do
-         do i = 1, size(run%model%fixes)
-            associate (fix => run%model%fixes(i))
-               if (acts_in(fix%stages, stage%name)) is_break = is_break .or. abs(fix%from - time) < LAST_STEP*dt &
-                                                               .or. abs(fix%until - time) < LAST_STEP*dt
-            end associate
-         end do
+         is_break = is_break .or. any(abs(times_of_supports(run) - time) < LAST_STEP*dt)
       end associate
    end function is_break
 
