@@ -3,10 +3,10 @@
 module load_shapes
    use acting_places, only: facing_edges
    use degrees_of_freedom, only: tie_pairs
-   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use given_pressures, only: edges_with_flow
    use kinds, only: wp
    use model_types, only: model_t, load_t
+   use porous_domain, only: edge_point_t, points_of_edge, PER_EDGE
    use scene_parts, only: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)

@@ -7,7 +7,6 @@
 module absorbing
    use acting_places, only: facing_edges, acting_stages
    use archive, only: archive_t
-   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_GROUP, EXIT_MATERIAL
    use faults, only: fault_t, raise
@@ -19,7 +18,8 @@ module absorbing
    use model_types, only: model_t, problem_t, action_t, factor_at
    use name_search, only: mesh_group, history_named
    use permeability_laws, only: relative_t, relative_permeability
-   use porous_domain, only: domain_t, copy_state, mixture_density, pressures_at, law_of, COUPLED, UNDRAINED
+   use porous_domain, only: domain_t, edge_point_t, copy_state, mixture_density, points_of_edge, pressures_at, law_of, &
+                            PER_EDGE, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
