@@ -115,6 +115,7 @@ contains
       if (status%code /= CONTACT_OK) return
       if (present(friction)) call add_friction(geometry, with_tangent, friction, work, result)
       result%active = result%pressure > 0.0_wp
+      result%size = abs(result%force)
    end subroutine contact_evaluate
 
    !> Weights of the whole slave edges. The hats bend at the middle node, so both halves are integrated. Sets

@@ -6,30 +6,12 @@ module contact_plate
    use kinds, only: wp
    use contact_geometry, only: contact_geometry_t
    use contact_penalty, only: contact_result_t, new_result
-   use contact_response, only: nodal_forces_t, new_forces, make_room, add_column
+   use contact_response, only: nodal_forces_t, make_room, add_column
    use plate_motion, only: plate_motion_t
    implicit none (type, external)
    private
-   public :: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
-   public :: new_spring_result, evaluate_springs, lengths_of_nodes
-
-   !> Forces and tangent over the unknowns 2 (node - 1) + direction of the slave's nodes, then those of the plate.
-   type, extends(nodal_forces_t) :: plate_response_t
-      real(wp), allocatable :: size(:)       !< Sum of the magnitudes that a force is made of [kN].
-   end type plate_response_t
+   public :: gather_on_plate, force_on_plate, new_spring_result, evaluate_springs, lengths_of_nodes
 contains
-   !> Room for the forces and the tangent of a plate with `own` unknowns, sized for the slave of a geometry.
-   pure function new_plate_response(geometry, own) result(plate)
-      type(contact_geometry_t), intent(in) :: geometry
-      integer, intent(in) :: own
-      type(plate_response_t) :: plate
-      integer :: n
-
-      n = 2*geometry%slave_nodes
-      plate%nodal_forces_t = new_forces(n + own)
-      allocate (plate%size(n + own), source=0.0_wp)
-   end function new_plate_response
-
    !> Slope of the energy against the unknowns of the plate: minus the forces that contact exerts on it [kN].
    !> docs/theory/contact.md section 4.
    pure function force_on_plate(geometry, result, slopes) result(force)
@@ -46,15 +28,16 @@ contains
       end do
    end function force_on_plate
 
-   !> Gathers an evaluation whose master is the face of the plate. docs/theory/contact.md section 4. What no unknown of
-   !> the plate follows is left out.
+   !> Gathers an evaluation whose master is the face of the plate, over the unknowns 2 (node - 1) + direction of the
+   !> slave's nodes, then those of the plate. docs/theory/contact.md section 4. What no unknown of the plate follows is
+   !> left out.
    pure subroutine gather_on_plate(geometry, result, motion, x0, q, plate)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_result_t), intent(in) :: result
       class(plate_motion_t), intent(in) :: motion
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) of the face, undisplaced [m]
       real(wp), intent(in) :: q(:)       !< (unknowns of the motion) [m]
-      type(plate_response_t), intent(inout) :: plate
+      type(nodal_forces_t), intent(inout) :: plate
       real(wp), dimension(2*geometry%slave_nodes, size(q)) :: right, below   ! The plate's columns and rows.
       real(wp) :: corner(size(q), size(q)), slopes(size(q), 2*size(x0, 2))
       integer :: k, i, j, n, own

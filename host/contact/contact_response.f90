@@ -23,6 +23,7 @@ module contact_response
    !> Forces over numbered unknowns, and their slopes as entries of a matrix.
    type :: nodal_forces_t
       real(wp), allocatable :: force(:)         !< Slope of the energy: minus what contact exerts on the nodes [kN]
+      real(wp), allocatable :: size(:)          !< Sum of the magnitudes that a force is made of [kN].
       integer :: triplets = 0                   !< Number of triplets that are filled.
       integer, allocatable :: row(:), column(:)
       real(wp), allocatable :: value(:)         !< d force/d displacement; equal places are to be added [kN/m]
@@ -33,7 +34,7 @@ contains
       integer, intent(in) :: unknowns
       type(nodal_forces_t) :: forces
 
-      allocate (forces%force(unknowns), source=0.0_wp)
+      allocate (forces%force(unknowns), forces%size(unknowns), source=0.0_wp)
       allocate (forces%row(FIRST_ROOM), forces%column(FIRST_ROOM), source=0)
       allocate (forces%value(FIRST_ROOM), source=0.0_wp)
    end function new_forces
