@@ -251,33 +251,27 @@ contains
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name
       real(wp), intent(inout), contiguous, target :: values(..)
-
-      if (size(values) > 0) call get_raw(file, name, shape(values), c_loc(values))
-   end subroutine get
-
-   subroutine get_raw(file, name, extent, values)
-      type(h5_t), intent(inout) :: file
-      character(*), intent(in) :: name
-      integer, intent(in) :: extent(:)
-      type(c_ptr), intent(in) :: values
       integer(hid_t) :: set
       integer(hsize_t) :: dims(2)
       integer :: status, rank
       type(c_ptr) :: place
 
+      if (size(values) == 0) return
       call h5dopen_f(file%id, name, set, status)
       call note(file, [status])
       if (status < 0) return
       call extent_of_set(set, rank, dims)
-      if (rank /= max(1, size(extent))) then
-         file%good = .false.
-      else if (any(dims(:size(extent)) /= extent) .or. (size(extent) == 0 .and. dims(1) /= 1)) then
-         file%good = .false.
-      else
-         place = values
-         call h5dread_f(set, H5T_NATIVE_DOUBLE, place, status)
-         call note(file, [status])
-      end if
+      associate (extent => shape(values))
+         if (rank /= max(1, size(extent))) then
+            file%good = .false.
+         else if (any(dims(:size(extent)) /= extent) .or. (size(extent) == 0 .and. dims(1) /= 1)) then
+            file%good = .false.
+         else
+            place = c_loc(values)
+            call h5dread_f(set, H5T_NATIVE_DOUBLE, place, status)
+            call note(file, [status])
+         end if
+      end associate
       call h5dclose_f(set, status)
-   end subroutine get_raw
+   end subroutine get
 end module hdf5_file

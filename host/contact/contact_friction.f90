@@ -1,15 +1,14 @@
 ! SPDX-License-Identifier: MIT
-!> Coulomb friction of a pair of edges: the slip of the slave nodes since the start of a step, with derivatives, the
-!> forces that tangential tractions exert, and the law of a node: stick on a penalty, slip at the limit.
+!> Coulomb friction of a pair of edges: the slip of the slave nodes since the start of a step, with derivatives, and the
+!> law of a node: stick on a penalty, slip at the limit.
 !> docs/theory/contact.md section 9.
 module contact_friction
    use contact_mortar, only: point_t, hats, hat_slopes, forces_on_nodes
-   use contact_response, only: response_t, add_work
    use contact_types, only: contact_options_t
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: friction_t, traction_t, pair_slips, drag_response, traction_at
+   public :: friction_t, traction_t, pair_slips, traction_at
    public :: tangential_stiffness, touching_share
 
    real(wp), parameter :: TANGENTIAL_SHARE = 0.1_wp   !< Share of the penalty, where nothing else is given [-].
@@ -111,21 +110,4 @@ contains
          end associate
       end do
    end subroutine pair_slips
-
-   !> Forces of a pair and, if wanted, their stiffness, the tractions of its slave nodes held.
-   !> docs/theory/contact.md section 9.
-   pure subroutine drag_response(points, traction, with_stiffness, response)
-      type(point_t), intent(in) :: points(:)
-      real(wp), intent(in) :: traction(3)   !< [kPa]
-      logical, intent(in) :: with_stiffness
-      type(response_t), intent(out) :: response
-      integer :: k
-
-      do k = 1, size(points)
-         associate (p => points(k))
-            call add_work(p, p%t, p%d_t, dot_product(hats(p%s), traction), &
-                          dot_product(hat_slopes(p%s), traction)*p%d_s, with_stiffness, response)
-         end associate
-      end do
-   end subroutine drag_response
 end module contact_friction

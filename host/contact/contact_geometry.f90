@@ -2,9 +2,10 @@
 !> Two surfaces that may come into contact: their edges, once per mesh, whether given coordinates will do, and boxes
 !> around edges, of which those that meet may lie opposite each other. docs/theory/contact.md section 2.
 module contact_geometry
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use contact_projection, only: edge_of, least_stretch
-   use contact_types, only: contact_options_t, contact_status_t, is_finite, CONTACT_OK, CONTACT_BAD_EDGE, &
-                            CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE
+   use contact_types, only: contact_options_t, contact_status_t, CONTACT_OK, CONTACT_BAD_EDGE, CONTACT_NOT_FINITE, &
+                            CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE
    use kinds, only: wp
    implicit none (type, external)
    private
@@ -107,7 +108,7 @@ contains
       integer :: i
 
       do i = 1, size(x, 2)
-         if (all(is_finite(x(:, i)))) cycle
+         if (all(ieee_is_finite(x(:, i)))) cycle
          status = contact_status_t(CONTACT_NOT_FINITE, i, master)
          return
       end do

@@ -8,12 +8,10 @@ module contact_interfaces
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, &
                               slid_work
-   use contact_response, only: nodal_forces_t
-   use contact_plate, only: plate_response_t, new_plate_response, gather_on_plate, force_on_plate
+   use contact_response, only: nodal_forces_t, new_forces
+   use contact_plate, only: gather_on_plate, force_on_plate, new_spring_result, evaluate_springs, lengths_of_nodes
    use plate_motion, only: plate_motion_t, plate_positions
-   use plate_springs, only: spring_geometry, new_spring_result, evaluate_springs, lengths_of_nodes
-   use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, &
-                            CONTACT_OK
+   use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
    use unknown_fields, only: DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, place_of
@@ -47,7 +45,7 @@ module contact_interfaces
       type(contact_result_t) :: probe       !< Outcome at other displacements, independent of the step.
       type(friction_t), allocatable :: friction   !< State from which the step starts; not allocated: it has none.
       real(wp), allocatable :: slave_u(:, :), master_u(:, :)   !< (2, nodes) Displacements there [m].
-      type(plate_response_t) :: on_plate    !< Forces where the master is a plate.
+      type(nodal_forces_t) :: on_plate      !< Forces where the master is a plate.
       type(plate_link_t) :: plate           !< Plate whose face is the master.
       real(wp), allocatable :: spring(:)    !< (slave nodes) Stiffness where they are tied to the plate [kN/m].
       type(surface_t) :: slave, master
@@ -147,7 +145,7 @@ contains
       one%slave = boundary
       one%master = boundary
       one%plate = plate
-      one%geometry = spring_geometry(size(boundary%node))
+      one%geometry = contact_geometry_t(slave_nodes=size(boundary%node), master_nodes=size(boundary%node))
       one%spring = penalty*lengths_of_nodes(boundary%edges, boundary%x0)
       one%result = new_spring_result(one%geometry, one%spring)
       one%probe = one%result
@@ -162,7 +160,7 @@ contains
       integer :: k
 
       associate (plate => one%plate)
-         one%on_plate = new_plate_response(one%geometry, size(plate%node))
+         one%on_plate = new_forces(2*one%geometry%slave_nodes + size(plate%node))
          one%unknown = [one%unknown, (dofs%of(plate%field(k), plate%node(k)), k=1, size(plate%node))]
       end associate
    end subroutine link
@@ -215,10 +213,8 @@ contains
    function message(self) result(text)
       class(contacts_t), intent(in) :: self
       character(:), allocatable :: text
-      character(400) :: words
 
-      call contact_message(self%status, words)
-      text = trim(words)
+      text = contact_message(self%status)
    end function message
 
    !> Evaluates the contacts without slopes, into `probe` of every interface that acts: the outcome of the last
@@ -403,23 +399,22 @@ contains
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
             if (allocated(t%plate%motion)) then
-               call add_one(t%unknown, t%on_plate, t%on_plate%size)
+               call add_one(t%unknown, t%on_plate)
             else
-               call add_one(t%unknown, t%result, abs(t%result%force))
+               call add_one(t%unknown, t%result)
             end if
          end associate
       end do
    contains
-      subroutine add_one(u, forces, sizes)
+      subroutine add_one(u, forces)
          integer, intent(in) :: u(:)
          class(nodal_forces_t), intent(in) :: forces
-         real(wp), intent(in) :: sizes(:)
          integer :: pair(2), k, place
 
          do k = 1, size(u)
             if (u(k) == 0) cycle
             residual(u(k)) = residual(u(k)) + forces%force(k)
-            scale(u(k)) = scale(u(k)) + sizes(k)
+            scale(u(k)) = scale(u(k)) + forces%size(k)
          end do
          if (.not. with_slopes) return
          do k = 1, forces%triplets

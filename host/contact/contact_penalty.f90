@@ -3,13 +3,13 @@
 !> nodes, energy, nodal forces and the consistent tangent of both surfaces: docs/theory/contact.md sections 2, 3 and 9;
 !> host/CONTACT.md has the limits.
 module contact_penalty
-   use contact_friction, only: friction_t, traction_t, pair_slips, drag_response, traction_at, &
-                               tangential_stiffness, touching_share
+   use contact_friction, only: friction_t, traction_t, pair_slips, traction_at, tangential_stiffness, touching_share
    use contact_geometry, only: contact_geometry_t, check_coordinates, edge_boxes, boxes_around, boxes_meet
    use contact_mortar, only: overlap_t, point_t, find_overlap, pair_points, pair_gaps, penetration, hats, POINTS, &
                              POSITION, SHARE, LARGEST_POINTS
    use contact_projection, only: edge_t, edge_of, place, tangent
-   use contact_response, only: response_t, nodal_forces_t, pair_response, new_forces, make_room, add_column
+   use contact_response, only: response_t, nodal_forces_t, nodal_response, pointwise_response, new_forces, make_room, &
+                               add_column
    use contact_types, only: TWO_PI, COMBINED_GAP, contact_options_t, contact_status_t, &
                             CONTACT_OK, CONTACT_NO_PROJECTION
    use kinds, only: wp
@@ -115,6 +115,7 @@ contains
       if (status%code /= CONTACT_OK) return
       if (present(friction)) call add_friction(geometry, with_tangent, friction, work, result)
       result%active = result%pressure > 0.0_wp
+      result%size = abs(result%force)
    end subroutine contact_evaluate
 
    !> Weights of the whole slave edges. The hats bend at the middle node, so both halves are integrated. Sets
@@ -222,7 +223,7 @@ contains
             energy = result%energy
             pressed = any(result%pressure(nodes) > 0.0_wp)
             if (pressed) then
-               call pair_response(pair%points(:pair%n), 0.0_wp, result%pressure(nodes), with_tangent, response)
+               call nodal_response(pair%points(:pair%n), .false., result%pressure(nodes), with_tangent, response)
                call add_response(unknowns_of(geometry, pair%slave, pair%master), response, with_tangent, result)
             end if
             if (at_points > 0.0_wp) &
@@ -277,8 +278,8 @@ contains
       do i = 1, result%pairs
          associate (pair => work%pair(i))
             if (.not. any(abs(result%traction(geometry%slave_edges(:, pair%slave))) > 0.0_wp)) cycle
-            call drag_response(pair%points(:pair%n), result%traction(geometry%slave_edges(:, pair%slave)), &
-                               with_tangent, response)
+            call nodal_response(pair%points(:pair%n), .true., result%traction(geometry%slave_edges(:, pair%slave)), &
+                                with_tangent, response)
             call add_response(unknowns_of(geometry, pair%slave, pair%master), response, with_tangent, result)
          end associate
       end do
@@ -329,9 +330,9 @@ contains
                status = contact_status_t(CONTACT_NO_PROJECTION, pair%slave, .false., missed)
                return
             end if
-            call pair_response(ends(:n), penalty, result%pressure(nodes), with_tangent, response)
+            call pointwise_response(ends(:n), penalty, with_tangent, response)
          else
-            call pair_response(pair%points(:pair%n), penalty, result%pressure(nodes), with_tangent, response)
+            call pointwise_response(pair%points(:pair%n), penalty, with_tangent, response)
          end if
          result%energy = result%energy + response%energy
          load(nodes) = load(nodes) + response%load

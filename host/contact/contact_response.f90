@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Forces and stiffness of one pair of edges, with the nodal pressures given; what follows from their change is added
-!> where the nodes are known (contact_penalty). The pressure at a point is
-!>   nodal gaps      p = sum_A M_A p_A, p_A held;
+!> Forces and stiffness of one pair of edges. The pressure at a point is
+!>   nodal gaps      p = sum_A M_A p_A, p_A held: what follows from its change is added in contact_penalty;
 !>   pointwise gaps  p = eps <-g>.
 !> docs/theory/contact.md section 3.
 module contact_response
@@ -9,7 +8,7 @@ module contact_response
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: response_t, nodal_forces_t, pair_response, add_work, new_forces, make_room, add_column
+   public :: response_t, nodal_forces_t, nodal_response, pointwise_response, new_forces, make_room, add_column
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
 
@@ -24,6 +23,7 @@ module contact_response
    !> Forces over numbered unknowns, and their slopes as entries of a matrix.
    type :: nodal_forces_t
       real(wp), allocatable :: force(:)         !< Slope of the energy: minus what contact exerts on the nodes [kN]
+      real(wp), allocatable :: size(:)          !< Sum of the magnitudes that a force is made of [kN].
       integer :: triplets = 0                   !< Number of triplets that are filled.
       integer, allocatable :: row(:), column(:)
       real(wp), allocatable :: value(:)         !< d force/d displacement; equal places are to be added [kN/m]
@@ -34,7 +34,7 @@ contains
       integer, intent(in) :: unknowns
       type(nodal_forces_t) :: forces
 
-      allocate (forces%force(unknowns), source=0.0_wp)
+      allocate (forces%force(unknowns), forces%size(unknowns), source=0.0_wp)
       allocate (forces%row(FIRST_ROOM), forces%column(FIRST_ROOM), source=0)
       allocate (forces%value(FIRST_ROOM), source=0.0_wp)
    end function new_forces
@@ -68,49 +68,67 @@ contains
       end do
    end subroutine add_column
 
-   !> Forces (12) and, if wanted, stiffness (12, 12) of a pair of edges in local coordinates. docs/theory/contact.md
-   !> section 3.
-   pure subroutine pair_response(points, penalty, pressure, with_stiffness, response)
+   !> Forces of a pair and, if wanted, their stiffness, of pressures or, where it slides, tractions of its slave nodes,
+   !> which are held. docs/theory/contact.md sections 3 and 9.
+   pure subroutine nodal_response(points, slides, values, with_stiffness, response)
       type(point_t), intent(in) :: points(:)
-      real(wp), intent(in) :: penalty       !< Penalty of the pointwise form [kN/m3]; 0: the nodal form.
-      real(wp), intent(in) :: pressure(3)   !< Pressures of the slave nodes [kPa]; not used by the pointwise form.
+      logical, intent(in) :: slides
+      real(wp), intent(in) :: values(3)   !< [kPa]
       logical, intent(in) :: with_stiffness
       type(response_t), intent(out) :: response
-      real(wp) :: at_point, d_at_point(12), gap, d_nu(2, 12)
       integer :: k
 
       do k = 1, size(points)
          associate (p => points(k))
-            if (.not. penalty > 0.0_wp) then
-               at_point = dot_product(hats(p%s), pressure)
-               d_at_point = dot_product(hat_slopes(p%s), pressure)*p%d_s
-            else
-               if (p%phi >= 0.0_wp) cycle
-               gap = p%phi/p%length
-               at_point = -penalty*gap
-               d_at_point = -penalty/p%length*(p%d_phi - gap*p%d_length)
-               response%energy = response%energy + 0.5_wp*penalty*gap**2*p%length*p%area
-               response%load = response%load + p%area*p%length*hats(p%s)*at_point
-            end if
-            d_nu(1, :) = p%d_t(2, :)
-            d_nu(2, :) = -p%d_t(1, :)
-            call add_work(p, [p%t(2), -p%t(1)], d_nu, at_point, d_at_point, with_stiffness, response)
+            call add_work(p, slides, dot_product(hats(p%s), values), dot_product(hat_slopes(p%s), values)*p%d_s, &
+                          with_stiffness, response)
          end associate
       end do
-   end subroutine pair_response
+   end subroutine nodal_response
+
+   !> Forces of a pair and, if wanted, their stiffness, of a penalty on the gap at its points. docs/theory/contact.md
+   !> section 3.
+   pure subroutine pointwise_response(points, penalty, with_stiffness, response)
+      type(point_t), intent(in) :: points(:)
+      real(wp), intent(in) :: penalty       !< [kN/m3]
+      logical, intent(in) :: with_stiffness
+      type(response_t), intent(out) :: response
+      real(wp) :: pressure, gap
+      integer :: k
+
+      do k = 1, size(points)
+         associate (p => points(k))
+            if (p%phi >= 0.0_wp) cycle
+            gap = p%phi/p%length
+            pressure = -penalty*gap
+            response%energy = response%energy + 0.5_wp*penalty*gap**2*p%length*p%area
+            response%load = response%load + p%area*p%length*hats(p%s)*pressure
+            call add_work(p, .false., pressure, -penalty/p%length*(p%d_phi - gap*p%d_length), with_stiffness, response)
+         end associate
+      end do
+   end subroutine pointwise_response
 
    !> A pressure acts along the slave's normal at both points: the forces of a pair of points cancel and lie on one
    !> line, so that momentum and its moment are kept exactly. A traction acts along the slave's tangent.
    !> docs/theory/contact.md sections 3 and 9.
-   pure subroutine add_work(p, nu, d_nu, pressure, d_pressure, with_stiffness, response)
+   pure subroutine add_work(p, slides, pressure, d_pressure, with_stiffness, response)
       type(point_t), intent(in) :: p
-      real(wp), intent(in) :: nu(2), d_nu(2, 12)   !< Direction, as long as the slave's tangent [m], and its slopes [-].
+      logical, intent(in) :: slides   !< It acts along the tangent.
       real(wp), intent(in) :: pressure, d_pressure(12)   !< At the point [kPa], by the local coordinates [kPa/m].
       logical, intent(in) :: with_stiffness
       type(response_t), intent(inout) :: response
+      real(wp) :: nu(2), d_nu(2, 12)   !< Direction, as long as the slave's tangent [m], and its slopes [-].
       real(wp) :: push(12), d_load(12), load
       integer :: i, j, c
 
+      if (slides) then
+         nu = p%t
+         d_nu = p%d_t
+      else
+         nu = [p%t(2), -p%t(1)]
+         d_nu(1, :) = p%d_t(2, :)
+         d_nu(2, :) = -p%d_t(1, :)
+      end if
       load = p%area*pressure
       push = forces_on_nodes(p, nu)
       response%force = response%force + load*push

@@ -1,12 +1,12 @@
 ! SPDX-License-Identifier: MIT
 !> Options and status of the contact kernels, and what a status says in words.
 module contact_types
-   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, PI
+   use texts, only: whole
    implicit none (type, external)
    private
    public :: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP
-   public :: contact_options_t, has_friction, contact_status_t, contact_message, is_finite
+   public :: contact_options_t, has_friction, contact_status_t, contact_message
    public :: CONTACT_OK, CONTACT_BAD_EDGE, CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS, CONTACT_DISTORTED_EDGE, &
              CONTACT_NO_PROJECTION
 
@@ -41,8 +41,6 @@ module contact_types
       logical :: master = .false.     !< The edge or node is one of the master.
       real(wp) :: value = 0.0_wp      !< Value that was found.
    end type contact_status_t
-
-   integer(int64), parameter :: EXPONENT_BITS = int(z'7FF0000000000000', int64)   !< All set: NaN or infinity.
 contains
    !> Whether a contact has friction.
    pure logical function has_friction(options)
@@ -51,43 +49,33 @@ contains
       has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
    end function has_friction
 
-   !> A status in words: what, where, the value, what is allowed and what to do. Cut to the length of the text.
-   pure subroutine contact_message(status, text)
+   !> A status in words: what, where, the value, what is allowed and what to do.
+   pure function contact_message(status) result(text)
       type(contact_status_t), intent(in) :: status
-      character(*), intent(out) :: text
-      character(24) :: value
-      character(40) :: where
+      character(:), allocatable :: text
+      character(:), allocatable :: value
+      character(13) :: digits
 
-      write (value, '(es13.6)') status%value
-      value = adjustl(value)
-      write (where, '(a,i0,2a)') merge('node ', 'edge ', any(status%code == [CONTACT_NOT_FINITE, &
-         CONTACT_BAD_RADIUS])), status%index, ' of the ', trim(merge('master', 'slave ', status%master))//' surface'
-      text = 'contact: '//where
+      write (digits, '(es13.6)') status%value
+      value = trim(adjustl(digits))
+      text = 'contact: '//merge('node', 'edge', any(status%code == [CONTACT_NOT_FINITE, CONTACT_BAD_RADIUS]))// &
+             ' '//whole(status%index)//' of the '//trim(merge('master', 'slave ', status%master))//' surface'
       select case (status%code)
       case (CONTACT_BAD_EDGE)
-         text = trim(text)//' names node '//trim(value)//': it must be one of the surface, in at most two edges, '// &
+         text = text//' names node '//value//': it must be one of the surface, in at most two edges, '// &
                 'and a middle node in one'
       case (CONTACT_NOT_FINITE)
-         text = trim(text)//' has a coordinate that is not finite: cut the step'
+         text = text//' has a coordinate that is not finite: cut the step'
       case (CONTACT_BAD_RADIUS)
-         text = trim(text)//' lies at radius '//trim(value)//' m, it must be >= 0: hold the nodes on the axis, or '// &
+         text = text//' lies at radius '//value//' m, it must be >= 0: hold the nodes on the axis, or '// &
                 'cut the step'
       case (CONTACT_DISTORTED_EDGE)
-         text = trim(text)//' is folded or has no length (least stretch '//trim(value)//', must be > 0): keep the '// &
-                'middle node within the middle half, or cut the step'
-      case (CONTACT_NO_PROJECTION)
-         text = trim(text)//' has a normal that misses the master edge opposite by '//trim(value)//' of its '// &
+         text = text//' is folded or has no length (least stretch '//value//', must be > 0): keep '// &
+                'the middle node within the middle half, or cut the step'
+      case default
+         text = text//' has a normal that misses the master edge opposite by '//value//' of its '// &
                 'length: the surfaces are too strongly curved for their distance; refine the edges, lower the '// &
                 'search radius or cut the step'
-      case default
-         text = 'contact: no fault'
       end select
-   end subroutine contact_message
-
-   !> True if x is neither NaN nor infinite; by the bits, which neither traps nor costs anything.
-   pure elemental logical function is_finite(x)
-      real(wp), intent(in) :: x
-
-      is_finite = iand(transfer(x, EXPONENT_BITS), EXPONENT_BITS) /= EXPONENT_BITS
-   end function is_finite
+   end function contact_message
 end module contact_types

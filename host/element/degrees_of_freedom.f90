@@ -4,10 +4,11 @@
 module degrees_of_freedom
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use element_equations, only: element_size
+   use element_sums, only: LAST_U
    use porous_domain, only: domain_t
    implicit none (type, external)
    private
-   public :: dofs_t, number_unknowns, tie, tie_pairs
+   public :: dofs_t, number_unknowns, tie_pairs
 
    type :: dofs_t
       integer :: n = 0                        !< Unknowns.
@@ -23,7 +24,7 @@ contains
       integer, intent(in) :: ties(:, :)   !< (FIELDS, nodes): node whose unknown this node shares, 0 or itself: its own.
       type(dofs_t), intent(out) :: dofs
       logical :: has(FIELDS, size(domain%mesh%x, 2))
-      integer :: e, f, i, leader, most
+      integer :: e, f, i, leader
 
       has = .false.
       has(:DISPLACEMENTS, reshape(domain%mesh%t6, [size(domain%mesh%t6)])) = .true.
@@ -65,30 +66,17 @@ contains
             dofs%node(dofs%of(f, i)) = i
          end do
       end do
-      most = 0
-      do e = 1, size(domain%mesh%t6, 2)
-         most = max(most, element_size(domain, e))
-      end do
-      allocate (dofs%element(most, size(domain%mesh%t6, 2)), source=0)
+      allocate (dofs%element(maxval([(element_size(domain, e), e=1, size(domain%mesh%t6, 2))]), &
+                             size(domain%mesh%t6, 2)), source=0)
       do e = 1, size(domain%mesh%t6, 2)
          associate (node => domain%mesh%t6(:, e), n_p => domain%n_carriers(e), carriers => domain%carriers(:, e), &
                     region => domain%regions(domain%region_of(e)))
-            do i = 1, 6
-               dofs%element(2*i - 1:2*i, e) = dofs%of(:DISPLACEMENTS, node(i))
-            end do
-            if (region%with_w) dofs%element(13:12 + n_p, e) = dofs%of(AT_P_W, carriers(:n_p))
-            if (region%with_c) dofs%element(13 + n_p:12 + 2*n_p, e) = dofs%of(AT_P_C, carriers(:n_p))
+            dofs%element(:LAST_U, e) = reshape(dofs%of(:DISPLACEMENTS, node), [LAST_U])
+            if (region%with_w) dofs%element(LAST_U + 1:LAST_U + n_p, e) = dofs%of(AT_P_W, carriers(:n_p))
+            if (region%with_c) dofs%element(LAST_U + n_p + 1:LAST_U + 2*n_p, e) = dofs%of(AT_P_C, carriers(:n_p))
          end associate
       end do
    end subroutine number_unknowns
-
-   !> Makes nodes share one unknown of a field.
-   pure subroutine tie(nodes, field, ties)
-      integer, intent(in) :: nodes(:), field   !< (n); one of AT_...
-      integer, intent(inout) :: ties(:, :)   !< Leaders of tied nodes, as of number_unknowns.
-
-      if (size(nodes) > 0) ties(field, nodes) = minval(nodes)
-   end subroutine tie
 
    !> Makes the nodes of every pair share their first unknowns, and those of the nodes that they are tied to already.
    !> docs/theory/host.md section 7.6.

@@ -6,8 +6,8 @@ module element_equations
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use kinds, only: wp
    use material_point, only: material_t, response_t, batch_report_t, MOST_POINTS
-   use element_sums, only: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, &
-                           residual_of, matrix_of
+   use element_sums, only: sums_t, rows_t, weighted_rows, add_forces, add_balances, add_tangent, residual_of, &
+                           matrix_of, LAST_U
    use porous_domain, only: domain_t, region_t, model_state_t, gauss_t, mixture_density, given_pressures_at, &
                             gravity_on, law_of, COUPLED
    use porous_balance, only: kinematics_t, pore_t, point_response, PLACES, RR, TT, RZ, U
@@ -19,7 +19,6 @@ module element_equations
    public :: element_t, block_t, points_t, update_block, add_element, element_size, STRAIN_TOO_LARGE
 
    integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
-   integer, parameter :: LAST_U = 12
    !> Share of the momentum of a step that is a floor of the forces: accelerations are differences of velocities that
    !> large, 1e-6 leaves room for their rounding.
    real(wp), parameter :: FLIGHT_SHARE = 1.0e-6_wp
@@ -263,7 +262,8 @@ contains
       n_p = domain%n_carriers(element)
       n_fields = DISPLACEMENTS
       if (n_p > 0) n_fields = DISPLACEMENTS + (n - LAST_U)/n_p
-      call clear_sums(with_tangent, sums)
+      sums%r = 0.0_wp
+      if (with_tangent) sums%k = 0.0_wp
       out%stretch = 0.0_wp
       if (out%with_change) change = 0.0_wp
       do g = 1, domain%rule
@@ -285,7 +285,8 @@ contains
                end do
             end if
             rows = weighted_rows(gp)
-            call add_response(rows, n_fields, response, sums%r)
+            call add_forces(rows, response, sums%r)
+            call add_balances(rows, n_fields, response, sums%r)
             if (out%with_change) call add_forces(rows, &
                change_of(domain, region, k, gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), response), &
                change)

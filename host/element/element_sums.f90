@@ -7,12 +7,12 @@ module element_sums
    use porous_domain, only: gauss_t
    implicit none (type, external)
    private
-   public :: sums_t, rows_t, clear_sums, weighted_rows, add_response, add_forces, add_tangent, residual_of, matrix_of
+   public :: sums_t, rows_t, weighted_rows, add_forces, add_balances, add_tangent, residual_of, matrix_of, LAST_U
 
    integer, parameter :: NODES = 6
    integer, parameter :: U_R = 1, U_Z = 2, WATER = 3, SUCTION = 4   !< Fields of an element.
    integer, parameter :: FORCES = U + 2   !< Places of stress and force, before those of the fluids.
-   integer, parameter :: LAST_U = 2*NODES
+   integer, parameter :: LAST_U = 2*NODES   !< Displacements of an element, the first of its unknowns.
 
    !> Sums of the points of an element.
    type :: sums_t
@@ -26,15 +26,6 @@ module element_sums
       real(wp), dimension(NODES) :: m, dm_r, dm_z       !< Rows of the pressures.
    end type rows_t
 contains
-   !> Sums of no point yet.
-   pure subroutine clear_sums(with_tangent, sums)
-      logical, intent(in) :: with_tangent   !< Whether the matrix is cleared too; else it stays as it is.
-      type(sums_t), intent(inout) :: sums
-
-      sums%r = 0.0_wp
-      if (with_tangent) sums%k = 0.0_wp
-   end subroutine clear_sums
-
    !> The rows of B at a point, times its weight.
    pure type(rows_t) function weighted_rows(gp) result(b)
       type(gauss_t), intent(in) :: gp
@@ -48,18 +39,7 @@ contains
       b%dm_z = gp%weight*gp%dm(:, 2)
    end function weighted_rows
 
-   !> r = r + weight B^T response. Units of response: those of point_response.
-   pure subroutine add_response(b, fields, response, r)
-      type(rows_t), intent(in) :: b
-      integer, intent(in) :: fields           !< Number of fields of the element: 2, 3 or 4.
-      real(wp), intent(in) :: response(PLACES)
-      real(wp), intent(inout) :: r(NODES, 4)
-
-      call add_forces(b, response, r)
-      call add_balances(b, fields, response, r)
-   end subroutine add_response
-
-   !> The rows of the displacements in it.
+   !> r = r + weight B^T response in the rows of the displacements. Units of response: those of point_response.
    pure subroutine add_forces(b, response, r)
       type(rows_t), intent(in) :: b
       real(wp), intent(in) :: response(PLACES)
@@ -69,10 +49,10 @@ contains
       r(:, U_Z) = r(:, U_Z) + (b%d_z*response(ZZ) + b%d_r*response(RZ) + b%n*response(U + 2))
    end subroutine add_forces
 
-   !> The rows of the pressures in it.
+   !> r = r + weight B^T response in the rows of the pressures.
    pure subroutine add_balances(b, fields, response, r)
       type(rows_t), intent(in) :: b
-      integer, intent(in) :: fields
+      integer, intent(in) :: fields           !< Number of fields of the element: 2, 3 or 4.
       real(wp), intent(in) :: response(PLACES)
       real(wp), intent(inout) :: r(NODES, 4)
 

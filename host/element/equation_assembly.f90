@@ -1,18 +1,17 @@
 ! SPDX-License-Identifier: MIT
-!> Residual, its scale and its tangent for the whole mesh. Elements are computed in parallel and summed in a fixed
-!> order, so that the result does not depend on the number of threads.
+!> Residual, its scale and its tangent for the whole mesh. Elements are computed in parallel and summed in their order.
 module equation_assembly
    use wall_clock, only: clock
    use kinds, only: wp
    use carried_slopes, only: slopes_t, new_slopes, BY_MATERIAL, BY_SLOPES
    use degrees_of_freedom, only: dofs_t
    use element_equations, only: element_t, block_t, points_t, update_block, add_element, element_size
+   use element_sums, only: LAST_U
    use tangent_fallback, only: NO_FALLBACK
    use material_point, only: batch_report_t, MOST_ELEMENTS
    use porous_domain, only: domain_t, model_state_t, is_present, keep_element_state, COUPLED
    use sparsity_pattern, only: pattern_t
    use generalised_alpha, only: scheme_t
-   use unknown_fields, only: DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
    integer, parameter :: WORTH_THREADS = 64   !< Elements below which waking threads costs more than it saves.
@@ -135,9 +134,7 @@ contains
          assembly%replaced = 0
          if (assembly%fallback /= NO_FALLBACK) assembly%replaced = sum(assembly%soft)
       end if
-      call add_up(threads, pattern, with_tangent, assembly)
-      if (allocated(assembly%water)) call add_up_water(domain, dofs, pattern, assembly)
-      if (assembly%with_change) call add_up_change(dofs, pattern, assembly)
+      call add_up(domain, dofs, pattern, with_tangent, assembly)
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    contains
@@ -225,100 +222,60 @@ contains
       if (domain%regions(domain%region_of(e))%drainage /= COUPLED) return
       do i = 1, domain%n_p
          if (.not. air(domain%mesh%t6(i, e))) cycle
-         w = 12 + i
+         w = LAST_U + i
          c = w + domain%n_p
          out%r(w) = out%r(w) - out%r(c)
          if (with_tangent) out%k(w, :m) = out%k(w, :m) - out%k(c, :m)
       end do
    end subroutine balance_of_water
 
-   !> Adds up the changes of the forces on every displacement in the step. A balance of volume is made of rates: all of
-   !> it counts.
-   subroutine add_up_change(dofs, pattern, assembly)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      type(assembly_t), intent(inout), target :: assembly
-      real(wp), pointer, contiguous :: d_r(:)
-      integer :: i, j
-
-      d_r(1:size(assembly%d_r)) => assembly%d_r
-      if (.not. allocated(assembly%change)) allocate (assembly%change(pattern%n))
-      assembly%change = assembly%scale
-      do i = 1, pattern%n
-         if (dofs%field(i) > DISPLACEMENTS) cycle
-         assembly%change(i) = 0.0_wp
-         do j = pattern%r_first(i), pattern%r_first(i + 1) - 1
-            assembly%change(i) = assembly%change(i) + abs(d_r(pattern%r_source(j)))
-         end do
-      end do
-   end subroutine add_up_change
-
-   !> The magnitudes of the balances of water: the rows of p_w less those of p_c, unless they are it already.
-   pure subroutine add_up_water(domain, dofs, pattern, assembly)
+   !> Adds up the elements in their order, so that the sums do not depend on the number of threads.
+   pure subroutine add_up(domain, dofs, pattern, with_tangent, assembly)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
-      type(assembly_t), intent(inout) :: assembly
-      integer :: i, j, e, at
-
-      do i = 1, pattern%n
-         if (dofs%field(i) /= AT_P_W) cycle
-         assembly%water(i) = 0.0_wp
-         do j = pattern%r_first(i), pattern%r_first(i + 1) - 1
-            e = (pattern%r_source(j) - 1)/size(assembly%r, 1) + 1
-            at = pattern%r_source(j) - (e - 1)*size(assembly%r, 1)
-            if (assembly%air(dofs%node(i))) then
-               assembly%water(i) = assembly%water(i) + abs(assembly%r(at, e))
-            else
-               assembly%water(i) = assembly%water(i) + abs(assembly%r(at, e) &
-                                                          - assembly%r(at + domain%n_carriers(e), e))
-            end if
-         end do
-      end do
-   end subroutine add_up_water
-
-   subroutine add_up(threads, pattern, with_tangent, assembly)
-      integer, intent(in) :: threads
-      type(pattern_t), intent(in) :: pattern
       logical, intent(in) :: with_tangent
-      type(assembly_t), intent(inout), target :: assembly
-      real(wp), pointer, contiguous :: r(:), s(:)
-      real(wp) :: total, magnitudes, stretches
-      integer :: i, j
+      type(assembly_t), intent(inout) :: assembly
+      real(wp) :: water
+      integer :: a, e, i, j
 
-      r(1:size(assembly%r)) => assembly%r
-      s(1:size(assembly%r)) => assembly%stretch
-      !$omp parallel num_threads(threads) default(shared) private(i, j, total, magnitudes, stretches)
-      !$omp do schedule(static)
-      do i = 1, pattern%n
-         total = 0.0_wp
-         magnitudes = 0.0_wp
-         stretches = 0.0_wp
-         ! One loop: sums of parts that a list of places picks would copy these parts to the heap.
-         do j = pattern%r_first(i), pattern%r_first(i + 1) - 1
-            total = total + r(pattern%r_source(j))
-            magnitudes = magnitudes + abs(r(pattern%r_source(j)))
-            stretches = stretches + s(pattern%r_source(j))
+      assembly%residual = 0.0_wp
+      assembly%scale = 0.0_wp
+      assembly%floor = 0.0_wp
+      do e = 1, size(dofs%element, 2)
+         do a = 1, size(dofs%element, 1)
+            i = dofs%element(a, e)
+            if (i == 0) cycle
+            assembly%residual(i) = assembly%residual(i) + assembly%r(a, e)
+            assembly%scale(i) = assembly%scale(i) + abs(assembly%r(a, e))
+            assembly%floor(i) = assembly%floor(i) + assembly%stretch(a, e)
          end do
-         assembly%residual(i) = total
-         assembly%scale(i) = magnitudes
-         assembly%floor(i) = stretches
       end do
-      !$omp end do
-      if (with_tangent .and. threads > 1) then
-         !$omp do schedule(static)
-         do i = 1, size(pattern%col)
-            total = 0.0_wp
-            do j = pattern%first(i), pattern%first(i + 1) - 1
-               total = total + assembly%k(pattern%source(j))
+      if (assembly%with_change) then
+         if (.not. allocated(assembly%change)) allocate (assembly%change(pattern%n))
+         assembly%change = 0.0_wp
+         do e = 1, size(dofs%element, 2)
+            do a = 1, LAST_U
+               associate (change => assembly%change(dofs%element(a, e)))
+                  change = change + abs(assembly%d_r(a, e))
+               end associate
             end do
-            assembly%values(i) = total
          end do
-         !$omp end do
       end if
-      !$omp end parallel
-      if (.not. with_tangent .or. threads > 1) return
-      ! One thread adds element after element, the same sums in the same order in fewer instructions.
+      if (allocated(assembly%water)) then
+         assembly%water = 0.0_wp
+         do e = 1, size(dofs%element, 2)
+            do a = LAST_U + 1, LAST_U + domain%n_carriers(e)
+               i = dofs%element(a, e)
+               if (i == 0) cycle
+               ! The rows of p_w less those of p_c, unless they are the balance of the water already.
+               water = assembly%r(a, e)
+               if (.not. assembly%air(dofs%node(i))) water = water - assembly%r(a + domain%n_carriers(e), e)
+               assembly%water(i) = assembly%water(i) + abs(water)
+            end do
+         end do
+      end if
+      if (.not. with_tangent) return
       assembly%values = 0.0_wp
       do j = 1, size(pattern%place)
          assembly%values(pattern%place(j)) = assembly%values(pattern%place(j)) + assembly%k(j)

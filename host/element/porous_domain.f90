@@ -5,7 +5,7 @@ module porous_domain
    use exit_codes, only: EXIT_ELEMENT
    use unknown_fields, only: FIELDS
    use kinds, only: wp, PI
-   use shape_functions, only: quadratic, linear, triangle_rule
+   use shape_functions, only: quadratic, linear, edge_quadratic, triangle_rule, edge_rule
    use material_point, only: material_t, material_slot_t
    use permeability_laws, only: permeability_t
    use triangle_mesh, only: mesh_t
@@ -16,6 +16,7 @@ module porous_domain
    public :: domain_t, region_t, fluids_t, gauss_t, model_state_t, source_i, prepare_domain, new_state_of, copy_state, &
              mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
              keep_element_state, exchange_state, law_of
+   public :: edge_point_t, points_of_edge, PER_EDGE
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
    integer, parameter :: OUTFLOWS = 2    !< Flows out of the ground: of both fluids, of air.
@@ -58,6 +59,17 @@ module porous_domain
       real(wp) :: m(6), dm(6, 2)    !< Shape functions of the pressures.
       real(wp) :: n_over_r(6)       !< Hoop strain; 0 in plane strain.
    end type gauss_t
+
+   integer, parameter :: PER_EDGE = 3   !< Integration points of an edge.
+
+   !> Geometry at an integration point of an edge of the mesh, for everything that acts on a boundary.
+   type :: edge_point_t
+      real(wp) :: n(3) = 0.0_wp, m(3) = 0.0_wp   !< Shape functions of displacements and of pressures [-].
+      real(wp) :: x(2) = 0.0_wp                  !< Place [m].
+      real(wp) :: tangent(2) = 0.0_wp            !< dx/ds; turned right it is the outward normal times its length [m].
+      real(wp) :: ring = 0.0_wp                  !< Weight of the rule, times 2 pi r in axisymmetry [- or m].
+      real(wp) :: area = 0.0_wp                  !< ring |tangent| [m or m2]
+   end type edge_point_t
 
    abstract interface
       !> Body force [kN/m3] in the momentum balance, and volume supplied in the sum of the balances and in that of the
@@ -182,6 +194,29 @@ contains
             + domain%rule*domain%regions(domain%region_of(e))%law%n_state
       end do
    end subroutine prepare_domain
+
+   !> Integration points of an edge, which has the body on its left. docs/theory/host.md section 3.1.
+   pure function points_of_edge(domain, edge) result(points)
+      type(domain_t), intent(in) :: domain
+      integer, intent(in) :: edge(3)   !< Nodes: start, end, middle.
+      type(edge_point_t) :: points(PER_EDGE)
+      real(wp) :: s(PER_EDGE), weights(PER_EDGE), dn(3)
+      integer :: g
+
+      call edge_rule(s, weights)
+      do g = 1, PER_EDGE
+         associate (p => points(g))
+            call edge_quadratic(s(g), p%n, dn)
+            p%m = p%n
+            if (domain%n_p == 3) p%m = [0.5_wp*(1 - s(g)), 0.5_wp*(1 + s(g)), 0.0_wp]
+            p%x = matmul(domain%mesh%x(:, edge), p%n)
+            p%tangent = matmul(domain%mesh%x(:, edge), dn)
+            p%ring = weights(g)
+            if (domain%axisymmetric) p%ring = p%ring*2*PI*p%x(1)
+            p%area = p%ring*norm2(p%tangent)
+         end associate
+      end do
+   end function points_of_edge
 
    !> Finds the nodes that carry the pressures of every element. The centers of undrained elements must be nodes
    !> already.

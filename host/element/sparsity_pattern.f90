@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Sparsity pattern, row by row, and the list of element entries that add up to every place of it. The pattern is
-!> symmetric and knows nothing of boundary conditions, so these may change while it stays.
+!> Sparsity pattern, row by row, and the entry that every element entry adds to. The pattern is symmetric and knows
+!> nothing of boundary conditions, so these may change while it stays.
 module sparsity_pattern
    implicit none (type, external)
    private
@@ -10,12 +10,8 @@ module sparsity_pattern
       integer :: n = 0
       integer, allocatable :: row(:)      !< (n + 1) where every row begins
       integer, allocatable :: col(:)      !< Ascending in every row.
-      integer, allocatable :: first(:)    !< (entries + 1) where the sources of every entry begin
-      integer, allocatable :: source(:)   !< Place in the square matrices of the elements, one behind the other, from 1
-      integer, allocatable :: place(:)    !< The other way round: the entry to which every place adds
-      integer, allocatable :: before(:)   !< (elements + 1) Entries of these before those of an element.
-      integer, allocatable :: r_first(:), r_source(:)   !< Places in r(m, elements) that the entries of the vector are
-                                                        !< summed from.
+      integer, allocatable :: before(:)   !< (elements + 1) Entries of the square matrices of the elements before one.
+      integer, allocatable :: place(:)    !< The entry that every one of these adds to.
    end type pattern_t
 contains
    !> Pattern of elements given by their unknowns; `extra`: further pairs of unknowns that meet (contact).
@@ -24,118 +20,84 @@ contains
       integer, intent(in) :: element(:, :)   !< (m, elements) 0 behind the unknowns of an element.
       integer, intent(in) :: extra(:, :)   !< (2, pairs), each listed both ways round.
       type(pattern_t), intent(out) :: pattern
-      integer, allocatable :: mark(:), where_is(:), users(:), start(:), list(:), count_of(:), more(:), partner(:)
-      integer :: m, e, i, j, k, pass, used, a
-      integer :: m_of(size(element, 2))
+      integer, allocatable :: start(:), list(:), more(:), partner(:)   !< Places of every unknown in both lists.
+      integer, allocatable :: where_is(:), col(:)   !< Entry of every column in the present row; columns so far.
+      integer :: m_of(size(element, 2)), e, i, j, k, used
 
-      m = size(element, 1)
       m_of = count(element > 0, dim=1)
       pattern%n = n
       allocate (pattern%before(size(m_of) + 1), source=0)
       do e = 1, size(m_of)
          pattern%before(e + 1) = pattern%before(e) + m_of(e)**2
       end do
-      ! Elements of every unknown.
       call invert(n, element, start, list)
       call invert(n, extra(1:1, :), more, partner)
-      allocate (mark(n), source=0)
       allocate (where_is(n), source=0)
-      allocate (pattern%row(n + 1), source=1)
-      do pass = 1, 2
-         mark = 0
-         used = 0
-         do i = 1, n
-            pattern%row(i) = used + 1
-            do k = start(i), start(i + 1) - 1
-               e = (list(k) - 1)/m + 1
-               do a = 1, m_of(e)
-                  j = element(a, e)
-                  if (mark(j) == i) cycle
-                  mark(j) = i
-                  used = used + 1
-                  if (pass == 2) pattern%col(used) = j
-               end do
+      allocate (pattern%row(n + 1), pattern%place(sum(m_of**2)))
+      allocate (col(size(pattern%place) + n + size(extra, 2)))
+      used = 0
+      do i = 1, n
+         pattern%row(i) = used + 1
+         ! What no element knows still has a diagonal.
+         call add_column(i)
+         do k = start(i), start(i + 1) - 1
+            e = (list(k) - 1)/size(element, 1) + 1
+            do j = 1, m_of(e)
+               call add_column(element(j, e))
             end do
-            ! What no element knows still has a diagonal.
-            if (mark(i) /= i) then
-               mark(i) = i
-               used = used + 1
-               if (pass == 2) pattern%col(used) = i
-            end if
-            do k = more(i), more(i + 1) - 1
-               j = extra(2, partner(k))
-               if (mark(j) == i) cycle
-               mark(j) = i
-               used = used + 1
-               if (pass == 2) pattern%col(used) = j
-            end do
-            if (pass == 2) call sort(pattern%col(pattern%row(i):used))
          end do
-         pattern%row(n + 1) = used + 1
-         if (pass == 1) allocate (pattern%col(used))
-      end do
-      ! Sources of every entry.
-      allocate (users(used + 1), source=0)
-      do pass = 1, 2
-         if (pass == 2) then
-            allocate (pattern%first(used + 1), pattern%source(sum(users)))
-            pattern%first(1) = 1
-            do k = 1, used
-               pattern%first(k + 1) = pattern%first(k) + users(k)
-            end do
-            allocate (count_of(used), source=0)
-            allocate (pattern%place(sum(users)))
-         end if
-         do i = 1, n
-            do k = pattern%row(i), pattern%row(i + 1) - 1
-               where_is(pattern%col(k)) = k
-            end do
-            do k = start(i), start(i + 1) - 1
-               e = (list(k) - 1)/m + 1
-               a = list(k) - (e - 1)*m
+         do k = more(i), more(i + 1) - 1
+            call add_column(extra(2, partner(k)))
+         end do
+         call sort(col(pattern%row(i):used))
+         do k = pattern%row(i), used
+            where_is(col(k)) = k
+         end do
+         do k = start(i), start(i + 1) - 1
+            e = (list(k) - 1)/size(element, 1) + 1
+            associate (row_of_element => list(k) - (e - 1)*size(element, 1), before => pattern%before(e))
                do j = 1, m_of(e)
-                  associate (at => where_is(element(j, e)))
-                     if (pass == 1) then
-                        users(at) = users(at) + 1
-                     else
-                        pattern%source(pattern%first(at) + count_of(at)) = a + m_of(e)*(j - 1) + pattern%before(e)
-                        pattern%place(a + m_of(e)*(j - 1) + pattern%before(e)) = at
-                        count_of(at) = count_of(at) + 1
-                     end if
-                  end associate
+                  pattern%place(before + row_of_element + m_of(e)*(j - 1)) = where_is(element(j, e))
                end do
-            end do
+            end associate
          end do
       end do
-      call move_alloc(start, pattern%r_first)
-      call move_alloc(list, pattern%r_source)
+      pattern%row(n + 1) = used + 1
+      pattern%col = col(:used)
+   contains
+      !> Adds a column to the present row, unless it is there.
+      subroutine add_column(column)
+         integer, intent(in) :: column
+
+         if (where_is(column) >= pattern%row(i)) return
+         used = used + 1
+         col(used) = column
+         where_is(column) = used
+      end subroutine add_column
    end subroutine make_pattern
 
    !> Lists for every unknown the places (in array order) where it occurs.
    pure subroutine invert(n, element, start, list)
       integer, intent(in) :: n, element(:, :)
-      integer, allocatable, intent(out) :: start(:), list(:)
-      integer, allocatable :: next(:)
-      integer :: e, a, m
+      integer, allocatable, intent(out) :: start(:), list(:)   !< First place of every unknown in the list, and it.
+      integer :: next(n), e, a
 
-      m = size(element, 1)
-      allocate (start(n + 1), source=0)
+      allocate (start(n + 1), list(count(element > 0)))
+      next = 0
       do e = 1, size(element, 2)
-         do a = 1, m
-            if (element(a, e) == 0) cycle
-            start(element(a, e) + 1) = start(element(a, e) + 1) + 1
+         do a = 1, size(element, 1)
+            if (element(a, e) > 0) next(element(a, e)) = next(element(a, e)) + 1
          end do
       end do
       start(1) = 1
       do a = 1, n
-         start(a + 1) = start(a) + start(a + 1)
+         start(a + 1) = start(a) + next(a)
       end do
-      allocate (list(count(element > 0)))
       next = start(:n)
       do e = 1, size(element, 2)
-         do a = 1, m
+         do a = 1, size(element, 1)
             if (element(a, e) == 0) cycle
-            list(next(element(a, e))) = (e - 1)*m + a
+            list(next(element(a, e))) = (e - 1)*size(element, 1) + a
             next(element(a, e)) = next(element(a, e)) + 1
          end do
       end do

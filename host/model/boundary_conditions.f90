@@ -4,9 +4,8 @@
 module boundary_conditions
    use kinds, only: wp
    use generalised_alpha, only: scheme_t, make_scheme, has_rates
-   use limited_pressures, only: begin_sides
    use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of
-   use prescribed_values, only: constraint_t, is_released
+   use prescribed_values, only: constraint_t, begin_sides, is_released
    use scene_parts, only: PRESCRIBED_P_A
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)

@@ -25,7 +25,6 @@ contains
       type(contacts_t), allocatable :: built
       type(contact_status_t) :: status
       type(surface_t) :: master
-      character(400) :: text
       type(plate_link_t) :: link
       integer :: i, at
 
@@ -46,8 +45,7 @@ contains
                call new_interface(model%dofs, surface_of(facing_edges(model, one%slave, one%in_stage), mesh%x), &
                                   master, link, one%options, built%interfaces(i), status)
                if (status%code == CONTACT_OK) cycle
-               call contact_message(status, text)
-               call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//trim(text)//'.')
+               call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//contact_message(status)//'.')
                return
             end associate
          end do

@@ -2,11 +2,11 @@
 !> Load vectors of a unit of every load, and the nodes that move together: made once, from the mesh.
 module load_shapes
    use acting_places, only: facing_edges
-   use degrees_of_freedom, only: tie, tie_pairs
-   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
+   use degrees_of_freedom, only: tie_pairs
    use given_pressures, only: edges_with_flow
    use kinds, only: wp
    use model_types, only: model_t, load_t
+   use porous_domain, only: edge_point_t, points_of_edge, PER_EDGE
    use scene_parts, only: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -22,8 +22,10 @@ contains
 
       allocate (ties(FIELDS, size(model%domain%mesh%x, 2)), source=0)
       do i = 1, size(model%plates)
-         if (model%plates(i)%group > 0 .and. .not. model%plates(i)%penalty > 0.0_wp) &
-            call tie(model%domain%mesh%groups(model%plates(i)%group)%nodes, AT_U_Z, ties)
+         if (model%plates(i)%group == 0 .or. model%plates(i)%penalty > 0.0_wp) cycle
+         associate (nodes => model%domain%mesh%groups(model%plates(i)%group)%nodes)
+            ties(AT_U_Z, nodes) = minval(nodes)
+         end associate
       end do
       do i = 1, size(model%ties)
          call tie_pairs(model%ties(i)%pairs, merge(FIELDS, DISPLACEMENTS, model%ties(i)%pressures), ties)

@@ -141,11 +141,6 @@ module model_types
       character(:), allocatable :: words
    end type text_t
 
-   type :: solver_t
-      logical :: reuse_factors = .true.
-      integer :: ordering = 1                        !< See sparse_factors.
-   end type solver_t
-
    type :: model_t
       type(origin_t) :: origin
       real(wp) :: step_tolerance = 0.0_wp            !< Of the scene, that of its stages and laws [-]; 0: not given.
@@ -170,7 +165,7 @@ module model_types
       logical, allocatable :: ground(:, :)           !< (elements, stages) What a stage has; not allocated: all.
       type(term_box_t), allocatable :: terms(:)      !< Those that the scene has, in the order of their registry.
       type(output_t) :: output
-      type(solver_t) :: solver
+      logical :: reuse_factors = .true.              !< Of the matrix, where they serve.
    end type model_t
 
    !> A model and the solution of its steps.

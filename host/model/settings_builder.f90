@@ -58,10 +58,8 @@ contains
          call k%whole('threads', domain%threads, 0, 1024, 'threads over elements; 0: by size, at most OMP_NUM_THREADS')
          call k%flag('lanes', model%lanes, 'no|yes', 'yes', &
                      'points of &mud eight at a time: less time, and numbers that differ by rounding', ':lanes')
-         call k%flag('factors', model%solver%reuse_factors, 'reuse|fresh', 'reuse', &
+         call k%flag('factors', model%reuse_factors, 'reuse|fresh', 'reuse', &
                      'factors of the matrix: reused while they serve, or new in every iteration')
-         call k%word('ordering', model%solver%ordering, 'auto|amd|metis|best', &
-                     'ordering of the unknowns; auto: amd, beyond 10,000 unknowns metis; best tries several')
          call k%whole('checkpoint_steps', output%checkpoint_steps, 0, 1000*MANY, &
                       'checkpoint.h5 after every so many steps; 0: none')
          call k%number('checkpoint_seconds', output%checkpoint_seconds, ZERO, BIG, &

@@ -7,7 +7,7 @@ module energy_ledger
    use archive, only: archive_t
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
-   use linear_forces, only: work_of_linear_forces
+   use springs, only: work_of_linear_forces
    use porous_domain, only: region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
                             gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability

@@ -16,7 +16,7 @@ module ledger_observer
    use run_observer, only: observer_t, FITS, BEGINS, STEP, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
-   use springs, only: add_mean_of_spring
+   use springs, only: add_mean_of_springs
    use texts, only: short
    use wall_clock, only: clock, add_elapsed
    use warnings, only: print_warning
@@ -120,7 +120,6 @@ contains
       real(wp), intent(out) :: force(:)     !< (unknowns)
       real(wp), allocatable :: before(:), after(:)
       real(wp) :: t0
-      integer :: i
 
       force = 0.0_wp
       associate (dofs => run%dofs)
@@ -131,11 +130,7 @@ contains
             end if
             call add_elapsed(run%system%seconds(T_CONTACT), t0)
          end if
-         do i = 1, size(run%constraint%springs)
-            associate (one => run%constraint%springs(i))
-               if (one%acts) call add_mean_of_spring(one, dofs, run%scheme, run%state, run%next, force)
-            end associate
-         end do
+         call add_mean_of_springs(run%constraint%springs, dofs, run%scheme, run%state, run%next, force)
       end associate
    end subroutine find_mean_forces
 

@@ -6,12 +6,11 @@ module run_summary
    use archive, only: archive_t
    use faults, only: fault_t
    use kinds, only: wp
-   use control_state, only: LIMITS, LIMIT_NAMES
    use named_points, only: values_at
    use porous_domain, only: UNDRAINED
    use run_cost, only: print_cost
    use run_observer, only: observer_t, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
-   use run_state, only: run_t
+   use run_state, only: run_t, LIMITS, LIMIT_NAMES
    use texts, only: short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    use wall_clock, only: clock

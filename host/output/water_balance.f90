@@ -4,7 +4,7 @@
 !> scheme count here. docs/theory/host.md section 9.2.
 module water_balance
    use archive, only: archive_t
-   use linear_forces, only: water_through_dashpots
+   use springs, only: water_through_dashpots
    use faults, only: fault_t
    use kinds, only: wp
    use porous_domain, only: pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS

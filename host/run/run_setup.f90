@@ -29,8 +29,7 @@ contains
       run%model => model
       run%domain => model%domain
       run%dofs => model%dofs
-      run%system%reuse = model%solver%reuse_factors
-      run%system%sparse%ordering = model%solver%ordering
+      run%system%reuse = model%reuse_factors
       call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
       call make_assembly(model%domain, model%dofs, run%pattern, run%assembly)
       run%constraint = new_constraint(model)

@@ -4,16 +4,40 @@ module run_state
    use, intrinsic :: iso_fortran_env, only: int64
    use archive, only: archive_t
    use kinds, only: wp
-   use control_state, only: control_state_t, new_control_state, exchange_control
+   use error_norms, only: rate_memory_t, new_memory, exchange_memory
    use start_findings, only: tension_t
    use model_types, only: problem_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
    use solution, only: stage_state_t
    use sparsity_pattern, only: make_pattern
+   use step_control, only: controller_t, exchange_controller
    use texts, only: short
+   use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
-   public :: run_t, news_t, exchange_run, enter_stage, now_in
+   public :: run_t, news_t, exchange_run, enter_stage, now_in, reset_control
+   public :: LIMITS, LIMIT_NAMES, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
+
+   !> Limits that keep a step from being longer: the first three in the order of the fields.
+   integer, parameter :: LIMITS = 7, BY_TIMES = 4, BY_LARGEST = 5, BY_SMALLEST = 6, BY_GROWTH = 7
+   character(30), parameter :: LIMIT_NAMES(LIMITS) = [character(30) :: 'error of the displacements', 'error of p_w', &
+      'error of p_c', 'times that steps end at', 'dt_max', 'smallest step', 'growth of the step']
+
+   !> Control of the time step: its memory from one step to the next, and what it has seen so far.
+   type :: control_state_t
+      type(controller_t) :: controller
+      type(rate_memory_t) :: memory
+      real(wp) :: t_sudden = 0.0_wp              !< Time of the last sudden change [s].
+      integer :: fresh = 0                       !< Accepted steps since then.
+      real(wp) :: start_up = 0.0_wp              !< Span in which changes are expected to grow yet [s].
+      integer :: rejected = 0                    !< Steps repeated because of their error, in the whole run.
+      real(wp) :: error = 0.0_wp                 !< Error of the last controlled step over the change of its field [-].
+      real(wp) :: scale(FIELDS) = 0.0_wp         !< Largest change of the fields in the run [m, kPa].
+      real(wp) :: limits(LIMITS) = 0.0_wp        !< Steps by what kept them short.
+      logical :: located = .false.               !< The attempt before was repeated to end where a contact closes.
+      real(wp), allocatable :: touching(:)       !< 1: the contact was closed at the start of the step, else 0.
+      real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
+   end type control_state_t
 
    !> News for observers, beside what the run computes with.
    type :: news_t
@@ -54,6 +78,19 @@ contains
       text = 'stage '//trim(run%stage%name)//', time '//short(run%next%time)//' s: '
    end function now_in
 
+   !> Sets the control of a run to that of no step; what it has counted goes on.
+   pure subroutine reset_control(run)
+      type(run_t), intent(inout) :: run
+      type(control_state_t) :: control
+
+      control%rejected = run%control%rejected
+      control%limits = run%control%limits
+      control%memory = new_memory(size(run%state%x, 2), size(run%state%s_rate))
+      allocate (control%x_first(FIELDS, size(run%state%x, 2)), source=0.0_wp)
+      allocate (control%touching(size(run%model%contacts)), source=0.0_wp)
+      run%control = control
+   end subroutine reset_control
+
    !> Exchanges a prepared run with an archive, between two steps. What is restored goes on to the last digit: loads,
    !> supports and the flow that is subtracted follow from the scene, and the ordering of the equations from their
    !> pattern.
@@ -72,8 +109,7 @@ contains
       do i = 1, size(run%terms)
          call run%terms(i)%term%exchange(run%problem_t, archive)
       end do
-      if (archive%reading) run%control = new_control_state(size(run%state%x, 2), size(run%state%s_rate), &
-                                                           size(run%model%contacts))
+      if (archive%reading) call reset_control(run)
       call exchange_control(run%control, archive)
       if (allocated(run%system%contacts)) call exchange_pairs(run%dofs%n, run%system%extra, archive)
       if (.not. archive%reading .or. .not. archive%good) return
@@ -85,6 +121,26 @@ contains
       deallocate (run%assembly%values)
       allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine exchange_run
+
+   !> Exchanges a control, made by reset_control, with an archive.
+   subroutine exchange_control(control, archive)
+      type(control_state_t), intent(inout) :: control
+      class(archive_t), intent(inout) :: archive
+
+      call archive%enter('control')
+      call exchange_controller(control%controller, archive)
+      call exchange_memory(control%memory, archive)
+      call archive%exchange('t_sudden', control%t_sudden, 's', 'time of the last sudden change')
+      call archive%exchange('fresh', control%fresh, '-', 'accepted steps since then', least=0)
+      call archive%exchange('start_up', control%start_up, 's', 'span in which changes are expected to grow yet')
+      call archive%exchange('rejected', control%rejected, '-', &
+                            'steps repeated because of their error, in the whole run', least=0)
+      call archive%exchange('scale', control%scale, 'm, kPa', 'largest change of every field in the run')
+      call archive%exchange('limits', control%limits, '-', 'steps by what kept them short')
+      call archive%exchange('touching', control%touching, '-', 'whether a contact was closed at the start of the step')
+      call archive%exchange('x_first', control%x_first, 'm, kPa', 'unknowns at the start of the stage')
+      call archive%leave('control')
+   end subroutine exchange_control
 
    !> Pairs of unknowns that surfaces have brought together: the ordering of the matrix depends on them.
    subroutine exchange_pairs(unknowns, extra, archive)

@@ -14,7 +14,7 @@ module step_attempt
    use run_state, only: run_t
    use step_failure, only: explain_failure, explain_short_step, LEAST_OF_STAGE
    use step_landings, only: LEAST_SPACINGS
-   use step_size, only: begin_control, scheme_of, prepare_rates, judge_step, shorten_step
+   use step_size, only: begin_control, begin_attempt, judge_step, shorten_step
    use solution, only: stage_state_t
    implicit none (type, external)
    private
@@ -68,8 +68,7 @@ contains
       run%next%gravity = gravity_at(run%model, run%state%time + dt)
       call set_step(dt, run, fault)
       if (fault%code /= 0) return
-      call prepare_rates(dt, run)
-      run%scheme = scheme_of(run, dt)
+      call begin_attempt(dt, run)
       if (any(run%model%fixes%acceleration)) call follow_accelerations(run%problem_t)
       call take_step(run%solution_t)
       if (run%log%refused_guess .and. run%at%step == 0) then

@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Times that controlled steps end at: breaks of load histories, supports that come and go, output, end of the stage.
-!> Given steps end early where they would jump over something.
+!> Given steps end early where they would jump over something. Controlled steps end where a contact closes, too: what
+!> meets within a step leaves no error of its own size in it, since it is hardly stopped there.
 !>
 !> Of a load history of a few breaks every one counts; of a record of thousands only those matter that a straight line
 !> over them would miss by more than a share of the accuracy. One rule serves both.
@@ -11,10 +12,10 @@ module step_landings
    use history_shapes, only: kinks_of
    use run_state, only: run_t
    use scene_parts, only: amplitude_t, amplitude_at
-   use unknown_fields, only: AT_P_W, AT_P_C
+   use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: next_time, end_of_given
+   public :: next_time, end_of_given, closed_contacts, ends_at_closing, end_where_it_closes
    public :: is_break, begins_suddenly, changes_within, straight_until, LAST_STEP, SHORTEST, LEAST_SPACINGS
 
    real(wp), parameter :: LAST_STEP = 1.0e-6_wp   !< A rest of a span below this share of a step is rounding.
@@ -22,6 +23,9 @@ module step_landings
    real(wp), parameter :: LEAST_SPACINGS = 16.0_wp   !< Spacings of numbers at a time: a shorter step is its rounding.
    real(wp), parameter :: CHORD_SHARE = 0.1_wp    !< Share of the accuracy that a straight line may leave out.
    real(wp), parameter :: SAME = 1.0e-9_wp        !< Relative difference that is none.
+   integer, parameter :: BISECTIONS = 40     !< Bisections of the time at which a contact closes: 1e-12 of the step.
+   !> A closing nearer than this share of the step that the error asks for is not landed on: the step may hold it.
+   real(wp), parameter :: NEAREST = 0.015_wp
 contains
    !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
    !> the end of the stage [s]. docs/theory/host.md section 4.5.
@@ -38,14 +42,25 @@ contains
          next = min(next, straight_until(run%model%amplitudes(i), now, close, min(next, now + reach), &
                                          CHORD_SHARE*run%stage%step_tolerance))
       end do
-      do i = 1, size(run%model%fixes)
-         if (.not. run%model%fixes(i)%in_stage(run%at%stage)) cycle
-         if (run%model%fixes(i)%from > now + close) next = min(next, run%model%fixes(i)%from)
-         if (run%model%fixes(i)%until > now + close) next = min(next, run%model%fixes(i)%until)
-      end do
+      associate (times => times_of_supports(run))
+         next = min(next, minval(times, mask=times > now + close))
+      end associate
       if (run%stage%output_dt > 0.0_wp) next = min(next, run%at%t_start &
          + run%stage%output_dt*(aint((now - run%at%t_start + close)/run%stage%output_dt) + 1))
    end function next_time
+
+   !> Times at which supports of the stage come and go [s].
+   pure function times_of_supports(run) result(times)
+      type(run_t), intent(in) :: run
+      real(wp), allocatable :: times(:)
+      integer :: i
+
+      associate (fixes => run%model%fixes)
+         associate (acts => [(fixes(i)%in_stage(run%at%stage), i=1, size(fixes))])
+            times = [pack(fixes%from, acts), pack(fixes%until, acts)]
+         end associate
+      end associate
+   end function times_of_supports
 
    !> End of a given step: as late as it is asked for, unless it would jump over a kink of a history of known shape, a
    !> whole segment of another, or all the time in which a support acts; then where a controlled step would end [s].
@@ -133,12 +148,7 @@ contains
                is_break = is_break .or. abs(turn) > stage%step_tolerance*(maxval(h%values) - minval(h%values))
             end associate
          end do
-         do i = 1, size(run%model%fixes)
-            associate (fix => run%model%fixes(i))
-               if (fix%in_stage(run%at%stage)) is_break = is_break .or. abs(fix%from - time) < LAST_STEP*dt &
-                                                          .or. abs(fix%until - time) < LAST_STEP*dt
-            end associate
-         end do
+         is_break = is_break .or. any(abs(times_of_supports(run) - time) < LAST_STEP*dt)
       end associate
    end function is_break
 
@@ -187,4 +197,63 @@ contains
          end do
       end associate
    end function begins_suddenly
+
+   !> 1 for every contact that is closed at given displacements, else 0; 0 too where these are refused.
+   function closed_contacts(run, x) result(closed)
+      type(run_t), intent(inout) :: run
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m]
+      real(wp) :: closed(size(run%control%touching))
+      logical :: are_closed(size(closed))
+
+      if (size(closed) > 0) call run%system%contacts%find_closed(x, are_closed)
+      closed = merge(1.0_wp, 0.0_wp, are_closed)
+   end function closed_contacts
+
+   !> Whether a step in which a contact closes ends there, or has been repeated so that it should. If not, the next
+   !> attempt does.
+   logical function ends_at_closing(run) result(ends)
+      type(run_t), intent(inout) :: run
+
+      associate (c => run%control, dt => run%scheme%dt)
+         ends = c%located .or. dt <= SHORTEST*run%stage%duration
+         if (ends) return
+         call end_where_it_closes(run)
+         ends = c%controller%dt >= dt*(1 - LAST_STEP)
+         c%located = .not. ends
+         if (.not. ends) c%rejected = c%rejected + 1
+      end associate
+   end function ends_at_closing
+
+   !> The next attempt ends where a contact closes, if that is shorter than what its error asks for. The time is looked
+   !> for along the motion that keeps its accelerations: exact for bodies in free flight. Where that motion closes none
+   !> the step stays as its error asks for.
+   subroutine end_where_it_closes(run)
+      type(run_t), intent(inout) :: run
+      real(wp) :: open, shut, middle
+      integer :: i
+
+      open = 0.0_wp
+      shut = run%scheme%dt
+      if (.not. closes_after(shut)) return
+      do i = 1, BISECTIONS
+         middle = 0.5_wp*(open + shut)
+         if (closes_after(middle)) then
+            shut = middle
+         else
+            open = middle
+         end if
+      end do
+      associate (dt_next => run%control%controller%dt)
+         if (shut > NEAREST*dt_next) dt_next = min(dt_next, shut)
+      end associate
+   contains
+      logical function closes_after(time)
+         real(wp), intent(in) :: time   !< [s]
+         real(wp) :: x(FIELDS, size(run%state%x, 2))
+
+         x = run%state%x + time*run%state%v
+         x(:DISPLACEMENTS, :) = x(:DISPLACEMENTS, :) + 0.5_wp*time**2*run%state%a
+         closes_after = any(closed_contacts(run, x) > run%control%touching)
+      end function closes_after
+   end subroutine end_where_it_closes
 end module step_landings

@@ -4,19 +4,16 @@
 !> docs/theory/host.md section 4.5.
 module step_size
    use kinds, only: wp
-   use contact_landings, only: closed_contacts, ends_at_closing, end_where_it_closes
-   use control_state, only: new_control_state, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
-   use error_norms, only: shift_rates, local_errors, remember, forget, rms
-   use generalised_alpha, only: make_scheme, scheme_t, has_rates, has_inertia, is_flow
-   use run_state, only: run_t
-   use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, LAST_STEP, SHORTEST, &
-                            LEAST_SPACINGS
+   use error_norms, only: shift_rates, restore_rates, local_errors, remember
+   use generalised_alpha, only: make_scheme, has_rates, has_inertia, is_flow
+   use run_state, only: run_t, reset_control, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
+   use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, closed_contacts, &
+                            ends_at_closing, end_where_it_closes, LAST_STEP, SHORTEST, LEAST_SPACINGS
    use step_control, only: new_controller, judge, LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: begin_control, negligible_changes, next_step, scheme_of, prepare_rates, judge_step, shorten_step, &
-             keep_step, is_over
+   public :: begin_control, negligible_changes, next_step, begin_attempt, judge_step, shorten_step, keep_step, is_over
 
    !> A step of length dt errs by its third power, n of them by n dt**3: together by the tolerance a where each errs by
    !> a**(3/2), if the change as a whole is as smooth as a step.
@@ -46,7 +43,7 @@ contains
       associate (c => run%control)
          anew = .not. allocated(c%x_first)
          if (.not. anew) anew = run%model%stages(run%at%stage - 1)%zero_displacements
-         if (anew) c = new_control_state(size(run%state%x, 2), size(run%state%s_rate), size(run%model%contacts), c)
+         if (anew) call reset_control(run)
          c%x_first = run%state%x
          c%touching = closed_contacts(run, run%state%x)
          call sudden(run%state%time, run)
@@ -105,7 +102,7 @@ contains
 
       run%control%t_sudden = time
       run%control%fresh = 0
-      call forget(run%control%memory)
+      run%control%memory%known = .false.
    end subroutine sudden
 
    !> Whether a stage has come to its end. Up to rounding.
@@ -162,26 +159,18 @@ contains
       end associate
    end function next_end
 
-   !> Scheme of the step to come. Where a flow begins the rates before would take a share of what flows in that step out
-   !> of the balances: docs/theory/host.md section 4.2.
-   pure type(scheme_t) function scheme_of(run, dt) result(scheme)
-      type(run_t), intent(in) :: run
+   !> Sets the scheme of an attempt and, where steps are controlled, moves the rates of the present state to where it
+   !> expects them: docs/theory/host.md section 4.5. Where a flow begins the rates before would take a share of what
+   !> flows in that step out of the balances: docs/theory/host.md section 4.2.
+   subroutine begin_attempt(dt, run)
       real(wp), intent(in) :: dt   !< [s]
+      type(run_t), intent(inout) :: run
       logical :: begins
 
       begins = run%at%step == 0 .or. (run%stage%controlled .and. run%control%fresh == 0)
-      scheme = make_scheme(run%stage%kind, run%stage%rho_inf, dt, is_flow(run%stage%kind) .and. begins)
-   end function scheme_of
-
-   !> Before an attempt: rates of the present state where the step expects them. docs/theory/host.md section 4.5; where
-   !> steps are given they stay.
-   subroutine prepare_rates(dt, run)
-      real(wp), intent(in) :: dt   !< [s]
-      type(run_t), intent(inout) :: run
-
-      if (run%stage%controlled) call shift_rates(make_scheme(run%stage%kind, run%stage%rho_inf, dt), &
-         run%control%memory, run%state%v, run%state%s_rate, run%state%outflow)
-   end subroutine prepare_rates
+      run%scheme = make_scheme(run%stage%kind, run%stage%rho_inf, dt, is_flow(run%stage%kind) .and. begins)
+      if (run%stage%controlled) call shift_rates(run%scheme, run%control%memory, run%state)
+   end subroutine begin_attempt
 
    !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
    !> docs/theory/host.md section 4.5. Where steps are given every one stands.
@@ -226,8 +215,7 @@ contains
             known = .true.
             return
          end if
-         call local_errors(make_scheme(run%stage%kind, run%stage%rho_inf, run%scheme%dt), c%memory, run%state%x, &
-                           run%state%v, run%state%a, run%next%x, run%next%v, run%next%a, error, known)
+         call local_errors(run%scheme, c%memory, run%state, run%next, error, known)
          if (is_flow(run%stage%kind) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(run)
          ! Saturated soil holds no air and has no suction: its number follows no balance that holds it, and rings.
          where (run%state%x(AT_P_C, :) < 0.0_wp .and. run%next%x(AT_P_C, :) < 0.0_wp) error(AT_P_C, :) = 0.0_wp
@@ -316,19 +304,18 @@ contains
       type(run_t), intent(in) :: run
       integer, intent(in) :: bodies
 
-      way = maxval([0.0_wp, reshape(abs(run%next%x(:DISPLACEMENTS, bodies + 1:) &
-                                        - run%control%x_first(:DISPLACEMENTS, bodies + 1:)), &
-                                    [DISPLACEMENTS*(size(run%next%x, 2) - bodies)])])
+      way = max(0.0_wp, maxval(abs(run%next%x(:DISPLACEMENTS, bodies + 1:) &
+                                   - run%control%x_first(:DISPLACEMENTS, bodies + 1:))))
    end function way_of_plates
 
-   !> Displacements count as one field.
+   !> Root mean square over the nodes; displacements count as one field.
    pure function field_norms(values) result(norms)
-      real(wp), intent(in) :: values(:, :)
+      real(wp), intent(in) :: values(:, :)   !< (FIELDS, nodes)
       real(wp) :: norms(FIELDS)
 
-      norms(:DISPLACEMENTS) = rms(values(:DISPLACEMENTS, :))
-      norms(AT_P_W) = rms(values(AT_P_W:AT_P_W, :))
-      norms(AT_P_C) = rms(values(AT_P_C:AT_P_C, :))
+      norms = sum(values**2, dim=2)
+      norms(:DISPLACEMENTS) = sum(values(:DISPLACEMENTS, :)**2)
+      norms = sqrt(norms/max(1, size(values, 2)))
    end function field_norms
 
    !> Largest changes of the fields, that of the step under way among them; not below a share of their values.
@@ -352,13 +339,9 @@ contains
       if (.not. run%stage%controlled) return
       run%control%controller%dt = run%scheme%dt*run%at%factor
       run%control%controller%held = .true.
-      if (run%control%memory%based) then
-         run%state%v = run%control%memory%base_rate
-         run%state%s_rate = run%control%memory%base_s_rate
-         run%state%outflow = run%control%memory%base_outflow
-      end if
+      call restore_rates(run%control%memory, run%state)
       ! The rate of a static step before holds still; a flow may have failed where something begins.
-      if (has_rates(run%stage%kind)) call forget(run%control%memory)
+      if (has_rates(run%stage%kind)) run%control%memory%known = .false.
       run%at%factor = 1.0_wp
    end subroutine shorten_step
 
@@ -371,8 +354,7 @@ contains
       if (.not. run%stage%controlled) return
       breaks = .not. has_inertia(run%stage%kind) .and. is_break(run)
       associate (c => run%control, dt => run%scheme%dt, stage => run%stage)
-         call remember(make_scheme(stage%kind, stage%rho_inf, dt), c%memory, run%state%x, run%next%x, run%state%v, &
-                       run%state%s_rate, run%state%outflow)
+         call remember(run%scheme, c%memory, run%state, run%next)
          c%fresh = c%fresh + 1
          ! A first static step may have taken at once what acts from the start: its rate is none.
          if (c%fresh < merge(2, SETTLED, .not. has_rates(stage%kind))) c%memory%known = .false.

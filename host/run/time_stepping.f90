@@ -9,7 +9,7 @@ module time_stepping
                            ENDS
    use run_state, only: run_t, enter_stage
    use sparse_factors, only: release
-   use stress_tolerance, only: follow_newton, roughness
+   use newton_step, only: follow_newton, roughness
    use step_attempt, only: begin_stage, try_step
    use step_size, only: negligible_changes, next_step, keep_step, is_over
    use step_landings, only: LAST_STEP

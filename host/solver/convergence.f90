@@ -169,40 +169,24 @@ contains
       type(assembly_t), intent(in) :: assembly
       real(wp), intent(in) :: largest(FIELDS)   !< Largest scale of every field so far.
       real(wp) :: scales(FIELDS)
-      real(wp) :: s(FIELDS), floor(FIELDS)
+      integer :: floor_of(dofs%n), i
 
-      call add_scales(dofs, constraint, assembly, assembly%with_change, s, floor)
-      scales = max(sqrt(s), max(HISTORY_SHARE, assembly%rounding_share)*largest, sqrt(floor), NO_FORCE)
+      ! The rows of p_c hold the floor of the water.
+      floor_of = [(merge(dofs%of(AT_P_W, dofs%node(i)), i, dofs%field(i) == AT_P_C), i=1, dofs%n)]
+      scales = max(norms_of(dofs, constraint, measured_by(assembly)), &
+                   max(HISTORY_SHARE, assembly%rounding_share)*largest, &
+                   norms_of(dofs, constraint, RATE_SHARE*assembly%floor(floor_of)), NO_FORCE)
       scales(:DISPLACEMENTS) = max(scales(:DISPLACEMENTS), assembly%unresolved)
    end function field_scales
 
-   pure subroutine add_scales(dofs, constraint, assembly, by_change, s, floor)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
+   !> Magnitudes that a step is measured by: those of its changes, or of all forces. (unknowns) [kN, m3/s]
+   pure function measured_by(assembly) result(magnitudes)
       type(assembly_t), intent(in) :: assembly
-      logical, intent(in) :: by_change
-      real(wp), intent(out) :: s(FIELDS), floor(FIELDS)
-      integer :: i, f, row
+      real(wp) :: magnitudes(size(assembly%scale))
 
-      s = 0.0_wp
-      floor = 0.0_wp
-      do i = 1, dofs%n
-         f = dofs%field(i)
-         if (.not. counts(dofs, constraint, i)) cycle
-         if (by_change) then
-            s(f) = s(f) + assembly%change(i)**2
-         else
-            s(f) = s(f) + assembly%scale(i)**2
-         end if
-         ! The rows of p_c hold the floor of the water.
-         row = i
-         if (f == AT_P_C) row = dofs%of(AT_P_W, dofs%node(i))
-         floor(f) = floor(f) + (RATE_SHARE*assembly%floor(row))**2
-      end do
-      ! The displacements are one field: a component without forces is no measure of its own.
-      s(:DISPLACEMENTS) = sum(s(:DISPLACEMENTS))
-      floor(:DISPLACEMENTS) = sum(floor(:DISPLACEMENTS))
-   end subroutine add_scales
+      magnitudes = assembly%scale
+      if (assembly%with_change) magnitudes = assembly%change
+   end function measured_by
 
    !> The water's part of volume balances, in the rows of p_w: these less those of p_c, unless they are it already.
    pure function water_of(dofs, air, rows) result(water)
@@ -274,39 +258,31 @@ contains
       real(wp), intent(in) :: largest(FIELDS)   !< Largest scale of every field so far, as of field_scales.
       integer, intent(in) :: i
 
-      if (assembly%with_change) then
-         body_scale = maxval(assembly%change, mask=constraint%body == constraint%body(i))
-      else
-         body_scale = maxval(assembly%scale, mask=constraint%body == constraint%body(i))
-      end if
-      body_scale = max(body_scale, max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), &
-                       NO_FORCE, assembly%unresolved)
+      body_scale = max(maxval(measured_by(assembly), mask=constraint%body == constraint%body(i)), &
+                       max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), NO_FORCE, assembly%unresolved)
    end function body_scale
 
-   !> Norms of a residual over the unknowns that are free, displacements together. [kN, m3/s]
-   pure function residual_norms(dofs, constraint, rhs) result(norms)
+   !> Norms over the unknowns that are free, displacements together: a component without forces is no measure of its
+   !> own.
+   pure function norms_of(dofs, constraint, values) result(norms)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
-      real(wp), intent(in) :: rhs(:)   !< (unknowns)
+      real(wp), intent(in) :: values(:)   !< (unknowns)
       real(wp) :: norms(FIELDS)
-      integer :: i
+      integer :: i, f
 
       norms = 0.0_wp
       do i = 1, dofs%n
-         if (counts(dofs, constraint, i)) norms(dofs%field(i)) = norms(dofs%field(i)) + rhs(i)**2
+         f = dofs%field(i)
+         if (constraint%fixed(i)) cycle
+         if (f == AT_P_C) then
+            if (constraint%air(dofs%node(i))) cycle
+         end if
+         norms(f) = norms(f) + values(i)**2
       end do
       norms(:DISPLACEMENTS) = sum(norms(:DISPLACEMENTS))
       norms = sqrt(norms)
-   end function residual_norms
-
-   pure logical function counts(dofs, constraint, i)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      integer, intent(in) :: i
-
-      counts = .not. constraint%fixed(i)
-      if (counts .and. dofs%field(i) == AT_P_C) counts = .not. constraint%air(dofs%node(i))
-   end function counts
+   end function norms_of
 
    !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its
    !> worst unknown, the forces.
@@ -318,16 +294,15 @@ contains
       real(wp), intent(in) :: rounding(FIELDS)   !< Scales of which the tolerance asks for no more than rounding.
       real(wp), intent(in) :: largest(FIELDS)    !< Forces of the steps so far.
       type(log_t), intent(inout) :: log
-      real(wp) :: s(FIELDS), floor(FIELDS), scales(FIELDS), most(FIELDS), worst
+      real(wp) :: scales(FIELDS), most(FIELDS), worst
       integer :: i
 
       ! Always the forces themselves: their rounding is the floor of what changes.
-      call add_scales(dofs, constraint, assembly, .false., s, floor)
-      log%forces = sqrt(s)
+      log%forces = norms_of(dofs, constraint, assembly%scale)
       most = max(largest, log%forces)
       scales = max(field_scales(dofs, constraint, assembly, most), rounding)
       log%scales = scales
-      log%error = residual_norms(dofs, constraint, rhs)/scales
+      log%error = norms_of(dofs, constraint, rhs)/scales
       if (allocated(assembly%water)) then
          log%water = norm2(pack(water_of(dofs, constraint%air, rhs), has_water(dofs, constraint))) &
                      /max(water_scale(dofs, constraint, assembly, most), maxval(rounding(AT_P_W:)))
@@ -338,7 +313,7 @@ contains
             log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(constraint, assembly, most, i))
       end do
       log%worst_field = maxloc(log%error, 1)
-      log%forces_over_scale = sqrt(s(log%worst_field))/scales(log%worst_field)
+      log%forces_over_scale = log%forces(log%worst_field)/scales(log%worst_field)
       log%worst_unknown = 0
       worst = -1.0_wp
       do i = 1, dofs%n

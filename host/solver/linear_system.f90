@@ -4,12 +4,11 @@
 module linear_system
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
-   use conjugate_residuals, only: solve_by_factors, INACCURATE
    use convergence, only: field_scales, water_scale, water_of, body_scale, is_body
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
-   use sparse_factors, only: sparse_t, analyse, factorise, SOLVED
+   use sparse_factors, only: sparse_t, analyse, factorise, solve_by_factors, SOLVED, INACCURATE
    use sparsity_pattern, only: pattern_t, make_pattern
    use surface_forces, only: surface_forces_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W

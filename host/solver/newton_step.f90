@@ -1,37 +1,38 @@
 ! SPDX-License-Identifier: MIT
 !> One time step by Newton-Raphson with the exact tangent. One linear solve is one iteration.
+!> Newton's method and the stress integration ask each other for accuracy: an error of Newton's method below the
+!> tolerance of the stresses cannot be reached, since the substeps of a point change with its strain.
 !> docs/theory/host.md section 5.
 module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
-   use conjugate_residuals, only: solve_by_factors, INACCURATE, NOT_FINITE
    use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, linear_tolerance, &
                           rounding_in, water_of, BY_FORCES, BY_CHANGE, MOST_IN_VAIN
-   use linear_forces, only: add_linear_forces
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
+   use porous_domain, only: region_t
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC
-   use limited_pressures, only: choose_sides
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
-   use prescribed_values, only: constraint_t, constrain, loads_of_water
-   use stress_tolerance, only: follow_newton, is_tight
-   use sparse_factors, only: analyse, factorise, SOLVED, SINGULAR
+   use prescribed_values, only: constraint_t, constrain, choose_sides, loads_of_water
+   use sparse_factors, only: analyse, factorise, solve_by_factors, SOLVED, SINGULAR, INACCURATE, NOT_FINITE
    use solution, only: solution_t
    use sparsity_pattern, only: place_of
-   use springs, only: add_spring
+   use springs, only: add_springs, add_linear_forces
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
    private
-   public :: take_step, start_accelerations, unbalanced_forces
+   public :: take_step, start_accelerations, unbalanced_forces, follow_newton, roughness
    public :: CONVERGED, NOT_CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, &
              EQUATIONS_LOST
 
    integer, parameter :: CONVERGED = 0, NOT_CONVERGED = 1, MATERIAL_FAILED = 2, BODY_FREE = 3, SOLVER_FAILED = 4, &
                          CONTACT_FAILED = 5, EQUATIONS_LOST = 6
    real(wp), parameter :: ROUNDING = 1.0e-12_wp   !< Share of all contributions: no residual to begin with is smaller.
+   integer, parameter :: SCHEME_STAYS = 0
+   real(wp), parameter :: LEAST = 1.0e-10_wp          !< No stress is integrated to less [-].
    real(wp), parameter :: STRESS_SHARE = 1.0e-3_wp    !< Share of an error to which the stresses of the next pass are
                                                       !< integrated.
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of an unknown: old, predicted, corrected, and their
@@ -61,18 +62,19 @@ contains
       type(iterate_t) :: at
       integer :: status
 
-      at%t0 = clock()
+      call begin_iterate(solution, at)
       solution%log = log_t()
       associate (s => solution, log => solution%log, system => solution%system)
          call begin_step(solution, at)
          if (log%outcome /= CONVERGED) return
          do
-            call make_equations(solution, at)
+            call make_equations(s%scheme, solution, at, log%outcome)
             if (log%outcome /= CONVERGED) then
                if (.not. at%guessed .or. log%iterations > 0) return
                call drop_guess(solution, at)
                cycle
             end if
+            call note_equations(solution, at)
             if (log%iterations > 0) then
                call judge_iterate(solution, at)
                if (at%done) exit
@@ -82,7 +84,7 @@ contains
                if (.not. at%with_slopes) then
                   at%with_slopes = .true.
                   s%assembly%source = AS_BEFORE
-                  call make_equations(solution, at)
+                  call make_equations(s%scheme, solution, at, log%outcome)
                   if (log%outcome /= CONVERGED) return
                end if
             end if
@@ -112,6 +114,15 @@ contains
       end associate
    end subroutine take_step
 
+   !> Room for residual and correction.
+   subroutine begin_iterate(solution, at)
+      type(solution_t), intent(in) :: solution
+      type(iterate_t), intent(inout) :: at
+
+      allocate (at%rhs(solution%dofs%n), at%dx(solution%dofs%n), source=0.0_wp)
+      at%t0 = clock()
+   end subroutine begin_iterate
+
    !> Sets a step at its first guess, and says how closely its passes are integrated.
    subroutine begin_step(solution, at)
       type(solution_t), intent(inout) :: solution
@@ -119,7 +130,6 @@ contains
 
       associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
                  system => solution%system, scheme => solution%scheme, control => solution%newton, log => solution%log)
-         allocate (at%rhs(solution%dofs%n), at%dx(solution%dofs%n))
          at%guessed = .not. control%no_predictor
          new%time = old%time + scheme%dt
          call begin_passes(scheme, control, solution)
@@ -167,41 +177,94 @@ contains
       end associate
    end subroutine follow_error
 
-   !> Makes the residual of the iterate, with minus sign in at%rhs, and its slopes where they are asked for.
-   !> log%outcome: CONTACT_FAILED, MATERIAL_FAILED where these refuse it.
-   subroutine make_equations(solution, at)
+   !> Stresses are integrated to the tolerance of the material or to that of Newton's method, whichever
+   !> is smaller. docs/theory/host.md section 5.1.
+   subroutine follow_newton(tolerance, regions)
+      real(wp), intent(in) :: tolerance   !< Newton's [-].
+      type(region_t), intent(inout) :: regions(:)
+      real(wp) :: wanted
+      integer :: i
+
+      do i = 1, size(regions)
+         associate (law => regions(i)%law)
+            if (.not. law%tolerance > 0.0_wp) cycle
+            wanted = min(regions(i)%stress_tolerance, max(tolerance, LEAST))
+            if (abs(wanted - law%tolerance) > epsilon(1.0_wp)*wanted) call law%integrate_to(wanted, SCHEME_STAYS)
+         end associate
+      end do
+   end subroutine follow_newton
+
+   !> Largest tolerance of the stress integration; 0 without one. [-] docs/theory/host.md section 5.1.
+   pure real(wp) function roughness(regions)
+      type(region_t), intent(in) :: regions(:)
+      integer :: i
+
+      roughness = 0.0_wp
+      do i = 1, size(regions)
+         roughness = max(roughness, regions(i)%law%tolerance)
+      end do
+   end function roughness
+
+   !> Whether stresses are integrated to less than the material has. docs/theory/host.md section 5.1.
+   pure logical function is_tight(regions)
+      type(region_t), intent(in) :: regions(:)
+      integer :: i
+
+      is_tight = .false.
+      do i = 1, size(regions)
+         is_tight = is_tight .or. regions(i)%law%tolerance < 0.5_wp*regions(i)%stress_tolerance
+      end do
+   end function is_tight
+
+   !> Makes the equations of a scheme between both states, of contacts, elements and what acts beside them: the residual
+   !> with minus sign in at%rhs, and its slopes where at%with_slopes asks for them. outcome: CONTACT_FAILED or
+   !> MATERIAL_FAILED where these refuse the state, else CONVERGED.
+   subroutine make_equations(scheme, solution, at, outcome)
+      type(scheme_t), intent(in) :: scheme
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
+      integer, intent(out) :: outcome
       real(wp) :: spent
 
       associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
-                 system => solution%system, pattern => solution%pattern, scheme => solution%scheme, &
-                 tolerance => solution%newton%tolerance, log => solution%log)
+                 system => solution%system, pattern => solution%pattern)
+         outcome = CONVERGED
          spent = 0.0_wp
          call add_elapsed(system%seconds(T_REST), at%t0)
-         if (.not. update_contacts(system, solution%dofs, pattern, old%x + scheme%l_f*(new%x - old%x), at%with_slopes, &
-                                   assembly)) then
-            log%outcome = CONTACT_FAILED
+         ! At the old level no force of contacts follows the unknowns.
+         if (.not. update_contacts(system, solution%dofs, pattern, old%x + scheme%l_f*(new%x - old%x), &
+                                   at%with_slopes .and. scheme%l_f > 0.0_wp, assembly)) then
+            outcome = CONTACT_FAILED
             return
          end if
          call add_elapsed(system%seconds(T_CONTACT), at%t0)
          call assemble(solution%domain, solution%dofs, pattern, scheme, old, new, at%with_slopes, assembly)
          system%n_pass = system%n_pass + 1
-         log%rate_evaluations = log%rate_evaluations + assembly%rate_evaluations
+         solution%log%rate_evaluations = solution%log%rate_evaluations + assembly%rate_evaluations
          call add_elapsed(spent, at%t0)
          system%seconds(T_MATERIAL) = system%seconds(T_MATERIAL) + spent*assembly%material
          system%seconds(T_ASSEMBLY) = system%seconds(T_ASSEMBLY) + spent*(1 - assembly%material)
          if (assembly%bad_element > 0) then
-            log%outcome = MATERIAL_FAILED
+            outcome = MATERIAL_FAILED
             return
          end if
-         call add_what_acts(scheme, at%with_slopes, at%touched, solution, at%rhs, at%t0)
-         assembly%unresolved = at%rounded(1)/tolerance
-         if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1)) &
-                                                               /tolerance
-         if (log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
+         call add_what_acts(scheme, solution, at)
       end associate
    end subroutine make_equations
+
+   !> Notes what the equations of an iterate leave: reactions, and the forces that rounding leaves of ties.
+   subroutine note_equations(solution, at)
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+
+      associate (assembly => solution%assembly, system => solution%system)
+         system%reaction = -at%rhs
+         assembly%unresolved = at%rounded(1)
+         if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1))
+         assembly%unresolved = assembly%unresolved/solution%newton%tolerance
+         if (solution%log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
+      end associate
+   end subroutine note_equations
 
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
    !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.
@@ -366,25 +429,23 @@ contains
       rounding = ROUNDINGS*epsilon(1.0_wp)*sqrt(rounding)
    end function rounding_of_unknowns
 
-   !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in rhs.
-   subroutine add_what_acts(scheme, slopes, touched, solution, rhs, t0)
+   !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in at%rhs.
+   subroutine add_what_acts(scheme, solution, at)
       type(scheme_t), intent(in) :: scheme
-      logical, intent(in) :: slopes
-      real(wp), allocatable, intent(in) :: touched(:)   !< Forces of contacts before the step, if they are asked for.
       type(solution_t), intent(inout) :: solution
-      real(wp), intent(out) :: rhs(:)
-      real(wp), intent(inout) :: t0
+      type(iterate_t), intent(inout) :: at
       real(wp), allocatable :: without(:)   !< The residual without contacts.
 
-      associate (assembly => solution%assembly, system => solution%system, constraint => solution%constraint)
-         call add_forces(scheme, slopes, solution)
-         allocate (without(merge(solution%dofs%n, 0, allocated(touched))))
-         if (allocated(touched)) without(:) = assembly%residual
+      associate (assembly => solution%assembly, system => solution%system, constraint => solution%constraint, &
+                 rhs => at%rhs)
+         call add_forces(scheme, at%with_slopes, solution)
+         allocate (without(merge(solution%dofs%n, 0, allocated(at%touched))))
+         if (allocated(at%touched)) without(:) = assembly%residual
          if (allocated(system%contacts)) then
-            call add_elapsed(system%seconds(T_REST), t0)
-            call system%contacts%add(solution%pattern, scheme%l_f, slopes, assembly%residual, assembly%scale, &
-                                     assembly%values)
-            call add_elapsed(system%seconds(T_CONTACT), t0)
+            call add_elapsed(system%seconds(T_REST), at%t0)
+            call system%contacts%add(solution%pattern, scheme%l_f, at%with_slopes .and. scheme%l_f > 0.0_wp, &
+                                     assembly%residual, assembly%scale, assembly%values)
+            call add_elapsed(system%seconds(T_CONTACT), at%t0)
          end if
          rhs = constraint%load_0 + scheme%l_f*(constraint%load_1 - constraint%load_0) - constraint%offset
          call loads_of_water(solution%dofs, constraint%air, rhs)
@@ -395,8 +456,8 @@ contains
             ! What the step changes of loads and contacts, beside that of the elements. An overlap that no solution has
             ! answered yet presses with the penalty alone, which balances nothing: no more counts than the force that is
             ! there now.
-            if (allocated(touched)) assembly%change = assembly%change + &
-               min(abs(assembly%residual - without), abs(assembly%residual - without - touched))
+            if (allocated(at%touched)) assembly%change = assembly%change + &
+               min(abs(assembly%residual - without), abs(assembly%residual - without - at%touched))
             where (solution%dofs%field <= DISPLACEMENTS)
                assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
             elsewhere
@@ -404,7 +465,6 @@ contains
             end where
          end if
          rhs = rhs - assembly%residual
-         system%reaction = -rhs
       end associate
    end subroutine add_what_acts
 
@@ -415,7 +475,7 @@ contains
       type(solution_t), intent(inout) :: solution
       type(constraint_t) :: held
       type(scheme_t) :: scheme
-      real(wp), allocatable :: rhs(:), dx(:)
+      type(iterate_t) :: at
       integer :: status, i, f, steps
 
       solution%log = log_t()
@@ -432,35 +492,25 @@ contains
          assembly%air = .false.
          state%a = 0.0_wp
          work%a = 0.0_wp
-         allocate (rhs(solution%dofs%n), dx(solution%dofs%n))
-         if (.not. update_contacts(system, solution%dofs, pattern, state%x, .false., assembly)) then
-            log%outcome = CONTACT_FAILED
-            return
-         end if
-         call assemble(solution%domain, solution%dofs, pattern, scheme, state, work, .true., assembly)
-         if (assembly%bad_element > 0) then
-            log%outcome = MATERIAL_FAILED
-            return
-         end if
-         call add_forces(scheme, .true., solution)
-         if (allocated(system%contacts)) call system%contacts%add(pattern, 0.0_wp, .false., assembly%residual, &
-                                                                  assembly%scale, assembly%values)
-         rhs = held%load_0 - held%offset - assembly%residual
-         call constrain(solution%dofs, pattern, held, 0.0_wp*state%x, assembly%values, rhs)
+         call begin_iterate(solution, at)
+         call make_equations(scheme, solution, at, log%outcome)
+         if (log%outcome /= CONVERGED) return
+         call constrain(solution%dofs, pattern, held, 0.0_wp*state%x, assembly%values, at%rhs)
          if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
          system%analysed = .true.
          call factorise(system%sparse, assembly%values, status)
          system%factored = .false.
-         if (status == SOLVED) call solve_by_factors(system%sparse, assembly%values, rhs, 1 + 0*rhs, 0.0_wp, &
-                                                     MOST_STEPS, dx, steps, status)
+         if (status == SOLVED) call solve_by_factors(system%sparse, assembly%values, at%rhs, &
+                                                     spread(1.0_wp, 1, size(at%rhs)), 0.0_wp, MOST_STEPS, at%dx, &
+                                                     steps, status)
          if (status == INACCURATE) status = SOLVED
          if (status /= SOLVED) then
             log%outcome = outcome_of(status)
             return
          end if
          do i = 1, size(state%a, 2)
-            do f = 1, 2
-               if (solution%dofs%of(f, i) > 0) state%a(f, i) = dx(solution%dofs%of(f, i))
+            do f = 1, DISPLACEMENTS
+               if (solution%dofs%of(f, i) > 0) state%a(f, i) = at%dx(solution%dofs%of(f, i))
             end do
          end do
          work%a = state%a
@@ -473,23 +523,19 @@ contains
       type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads, load_1 become them.
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
       type(scheme_t) :: scheme
-      real(wp), allocatable :: touched(:)
-      real(wp) :: t0
+      type(iterate_t) :: at
+      integer :: outcome
 
-      associate (state => solution%state, work => solution%next, pattern => solution%pattern, &
-                 constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
-         t0 = clock()
-         allocate (forces(solution%dofs%n), source=0.0_wp)
+      associate (constraint => solution%constraint)
+         call begin_iterate(solution, at)
+         at%with_slopes = .false.
          scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
          constraint%load_1 = constraint%load_0
-         assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
+         solution%assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
          call begin_passes(scheme, control_t(), solution)
-         good = update_contacts(system, solution%dofs, pattern, state%x, .false., assembly)
-         if (good) call assemble(solution%domain, solution%dofs, pattern, scheme, state, work, .false., assembly)
-         if (good) good = assembly%bad_element == 0
-         if (.not. good) return
-         call add_what_acts(scheme, .false., touched, solution, forces, t0)
-         where (constraint%fixed .or. solution%dofs%field > DISPLACEMENTS) forces = 0.0_wp
+         call make_equations(scheme, solution, at, outcome)
+         good = outcome == CONVERGED
+         forces = merge(0.0_wp, at%rhs, constraint%fixed .or. solution%dofs%field > DISPLACEMENTS)
       end associate
    end function unbalanced_forces
 
@@ -513,10 +559,7 @@ contains
             place = place_of(pattern, i, i)
             if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
          end do
-         do i = 1, size(constraint%springs)
-            if (constraint%springs(i)%acts) &
-               call add_spring(constraint%springs(i), solution%dofs, pattern, scheme, old, new, slopes, assembly)
-         end do
+         call add_springs(constraint%springs, solution%dofs, pattern, scheme, old, new, slopes, assembly)
          call add_linear_forces(constraint%linear, solution%dofs, pattern, scheme, old, new, slopes, assembly)
       end associate
    end subroutine add_forces

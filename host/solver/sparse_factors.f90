@@ -1,17 +1,25 @@
 ! SPDX-License-Identifier: MIT
-!> Sparse direct solution by UMFPACK, the only module that knows it. Rows are given to it as columns of the transpose.
+!> Sparse solution by the factors of UMFPACK, the only module that knows it. Rows are given to it as columns of the
+!> transpose. The factors may belong to an earlier matrix: generalised conjugate residuals (Eisenstat, Elman, Schultz
+!> 1983; the iterates are those of GMRES) have them as preconditioner. With the factors of the matrix itself the first
+!> step is the direct solution, the second an iterative refinement. docs/theory/host.md section 6.
 module sparse_factors
+   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_c_binding, only: c_int, c_double, c_ptr, c_null_ptr, c_associated
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: sparse_t, analyse, factorise, backsolve, times, release, SOLVED, SINGULAR, FAILED, RCOND_SINGULAR
+   public :: sparse_t, analyse, factorise, solve_by_factors, times, release
+   public :: SOLVED, SINGULAR, FAILED, INACCURATE, NOT_FINITE, RCOND_SINGULAR
 
    integer, parameter :: SOLVED = 0, SINGULAR = 1, FAILED = 2
+   integer, parameter :: INACCURATE = 3       !< The steps allowed did not reach the target.
+   integer, parameter :: NOT_FINITE = 4       !< Numbers of the equations are not, or overflow.
+   real(wp), parameter :: ROUNDING = 1.0e-14_wp   !< Share of the right side that no step gets below.
    ! Places in UMFPACK's arrays (umfpack.h), from 1 here.
    integer, parameter :: CONTROLS = 20, INFOS = 90, CONTROL_STRATEGY = 6, CONTROL_REFINEMENT = 8, &
                          CONTROL_ORDERING = 11, INFO_RCOND = 68, INFO_LNZ = 44, INFO_UNZ = 45
-   real(c_double), parameter :: AMD = 1.0_c_double, METIS = 3.0_c_double, BEST = 4.0_c_double
+   real(c_double), parameter :: AMD = 1.0_c_double, METIS = 3.0_c_double
    !> Unknowns beyond which METIS saves more in the factors than its ordering costs: docs/theory/host.md section 6.
    integer, parameter :: MANY = 10000
    real(c_double), parameter :: STRATEGY_SYMMETRIC = 3.0_c_double
@@ -21,7 +29,6 @@ module sparse_factors
    real(wp), parameter :: RCOND_SINGULAR = 1.0e-13_wp
 
    type :: sparse_t
-      integer :: ordering = 1   !< 1 AMD or, of more than 10,000 unknowns, METIS; 2 AMD, 3 METIS, 4 the best of several.
       real(c_double) :: control(CONTROLS) = 0.0_c_double, info(INFOS) = 0.0_c_double
       integer(c_int), allocatable :: start(:), index(:)   !< The pattern, from 0.
       type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr
@@ -98,9 +105,7 @@ contains
       call umfpack_di_defaults(sparse%control)
       sparse%control(CONTROL_STRATEGY) = STRATEGY_SYMMETRIC
       sparse%control(CONTROL_REFINEMENT) = 0.0_c_double
-      associate (orderings => [merge(METIS, AMD, size(row) - 1 > MANY), AMD, METIS, BEST])
-         sparse%control(CONTROL_ORDERING) = orderings(sparse%ordering)
-      end associate
+      sparse%control(CONTROL_ORDERING) = merge(METIS, AMD, size(row) - 1 > MANY)
       status = merge(SOLVED, FAILED, umfpack_di_symbolic(size(row) - 1, size(row) - 1, sparse%start, sparse%index, &
                                                          c_null_ptr, sparse%symbolic, sparse%control, sparse%info) == 0)
       sparse%n_symbolic = sparse%n_symbolic + 1
@@ -136,6 +141,53 @@ contains
       sparse%entries = sparse%info(INFO_LNZ) + sparse%info(INFO_UNZ)
       sparse%n_numeric = sparse%n_numeric + 1
    end subroutine factorise
+
+   !> x with |W (b - A x)| <= target, W = diag(weight), in at most `most` steps. After INACCURATE x is the best found;
+   !> after another it is of no use.
+   subroutine solve_by_factors(sparse, values, b, weight, target, most, x, steps, status)
+      type(sparse_t), intent(inout) :: sparse
+      real(wp), intent(in) :: values(:), b(:), weight(:)   !< (entries) of A; (n); (n), > 0.
+      real(wp), intent(in) :: target
+      integer, intent(in) :: most
+      real(wp), intent(out) :: x(:)   !< (n)
+      integer, intent(out) :: steps, status   !< Steps taken; SOLVED, INACCURATE, NOT_FINITE or as of backsolve.
+      real(wp) :: z(size(b), most), w(size(b), most), r(size(b)), share, enough, left
+      integer :: j
+
+      x = 0.0_wp
+      r = weight*b
+      left = norm2(r)
+      enough = max(target, ROUNDING*left)
+      steps = 0
+      status = merge(SOLVED, NOT_FINITE, ieee_is_finite(left))
+      if (status /= SOLVED) return
+      do while (left > enough .and. steps < most)
+         steps = steps + 1
+         associate (k => steps)
+            call backsolve(sparse, values, r/weight, z(:, k), status)
+            if (status /= SOLVED) return
+            call times(sparse, values, z(:, k), w(:, k))
+            w(:, k) = weight*w(:, k)
+            do j = 1, k - 1
+               share = dot_product(w(:, j), w(:, k))
+               w(:, k) = w(:, k) - share*w(:, j)
+               z(:, k) = z(:, k) - share*z(:, j)
+            end do
+            share = norm2(w(:, k))
+            if (.not. (ieee_is_finite(share) .and. share > 0.0_wp)) then
+               status = NOT_FINITE
+               return
+            end if
+            w(:, k) = w(:, k)/share
+            z(:, k) = z(:, k)/share
+            share = dot_product(w(:, k), r)
+            x = x + share*z(:, k)
+            r = r - share*w(:, k)
+            left = norm2(r)
+         end associate
+      end do
+      if (left > enough) status = INACCURATE
+   end subroutine solve_by_factors
 
    !> Solves by the factors as they are; `values` is not looked at. status: SOLVED or FAILED. To be called after
    !> factorise.

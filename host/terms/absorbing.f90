@@ -8,7 +8,6 @@ module absorbing
    use acting_places, only: facing_edges, acting_stages, held_in, TURN
    use archive, only: archive_t
    use boundary_conditions, only: prescribing_fixes
-   use edge_points, only: edge_point_t, points_of_edge, PER_EDGE
    use equation_assembly, only: assemble
    use exit_codes, only: EXIT_GROUP, EXIT_MATERIAL
    use faults, only: fault_t, raise, EXIT_INPUT
@@ -16,15 +15,16 @@ module absorbing
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
    use kinds, only: wp
-   use linear_forces, only: linear_forces_t
    use material_point, only: material_t, response_t, batch_report_t
    use model_types, only: model_t, problem_t, action_t, factor_at
    use name_search, only: mesh_group, history_named, read_stages
    use permeability_laws, only: relative_t, relative_permeability
-   use porous_domain, only: domain_t, copy_state, mixture_density, pressures_at, law_of, COUPLED, UNDRAINED
+   use porous_domain, only: domain_t, edge_point_t, copy_state, mixture_density, points_of_edge, pressures_at, law_of, &
+                            PER_EDGE, COUPLED, UNDRAINED
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
+   use springs, only: linear_forces_t
    use texts, only: short, whole, LENGTH
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use warnings, only: print_warning

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Water that runs off: seepage faces and rain, where a water pressure has a limit. Which side of it acts is decided
-!> within Newton's method (limited_pressures). docs/theory/host.md section 7.7.
+!> within Newton's method (prescribed_values). docs/theory/host.md section 7.7.
 module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts, force_of

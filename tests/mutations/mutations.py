@@ -267,7 +267,6 @@ MUTATIONS = [
 ]
 
 MORTAR, RESPONSE, PENALTY = "contact/contact_mortar.f90", "contact/contact_response.f90", "contact/contact_penalty.f90"
-SPRINGS = "contact/plate_springs.f90"
 SEARCH, PLATE, JOINED = "contact/contact_geometry.f90", "contact/contact_plate.f90", "contact/contact_interfaces.f90"
 DRAINAGE, PLANE = "terms/contact_drainage.f90", "terms/plane_plates.f90"
 
@@ -301,7 +300,7 @@ CONTACT = [
     ("a plate turns without bending", (PLATE, "corner = corner + motion%bending(x0, q, result%force(n + 1:))",
                                       "corner = corner")),
     ("a plate turns the other way", (PLANE, "[-arms(2, i), arms(1, i)]/self%lever", "[arms(2, i), -arms(1, i)]/self%lever")),
-    ("springs of a plate pull its nodes alone", (SPRINGS, "result%force(size(pull) + 1:) = -pull",
+    ("springs of a plate pull its nodes alone", (PLATE, "result%force(size(pull) + 1:) = -pull",
                                                  "result%force(size(pull) + 1:) = -0.0_wp*pull")),
     ("zeroed displacements relax the springs of a plate", (JOINED, "if (allocated(t%spring)) stretched(:, t%slave%node) =",
                                                           "if (.false.) stretched(:, t%slave%node) =")),
@@ -368,7 +367,7 @@ REGIONS = [
 ]
 
 # What the field does to a boundary: (title, (file below host, text that stands there once, its replacement), ...).
-LIMITS, BALANCE, STAGED = "solver/limited_pressures.f90", "element/porous_balance.f90", "terms/staging.f90"
+LIMITS, BALANCE, STAGED = "solver/prescribed_values.f90", "element/porous_balance.f90", "terms/staging.f90"
 STRENGTHS, STEP, FRICTION = "terms/strength.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
 
 FIELD = [

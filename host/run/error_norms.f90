@@ -14,34 +14,39 @@ module error_norms
    use archive, only: archive_t
    use kinds, only: wp
    use generalised_alpha, only: scheme_t
+   use porous_domain, only: model_state_t, OUTFLOWS
+   use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
-   public :: rate_memory_t, new_memory, exchange_memory, shift_rates, local_errors, remember, forget, &
-             constant_of_accelerations, constant_of_rates, rms
+   public :: rate_memory_t, new_memory, exchange_memory, shift_rates, restore_rates, local_errors, remember, &
+             constant_of_accelerations, constant_of_rates
 
    real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    real(wp), parameter :: BENT = 1.0_wp/12   !< Mean deviation of a bent path from the straight step, of dt**2 x''.
 
+   !> Rates of a state: of the unknowns, of saturation, and the flows out of the ground, which move as rates do.
+   type :: rates_t
+      real(wp), allocatable :: v(:, :), s(:)   !< (FIELDS, nodes) [m/s, kPa/s], (points) [1/s]
+      real(wp) :: outflow(OUTFLOWS) = 0.0_wp   !< [m3/s]
+   end type rates_t
+
    !> Rates one step back.
    type :: rate_memory_t
-      logical :: known = .false.            !< There are such rates, with nothing sudden since.
-      real(wp) :: dt = 0.0_wp               !< Step from them to the present ones, which both belong to [s].
-      real(wp), allocatable :: rate(:, :)   !< (fields, nodes)
-      real(wp), allocatable :: s_rate(:)    !< (points)
-      real(wp) :: outflow(2) = 0.0_wp
-      ! The present ones as the last step left them; attempts of different length move them from here.
+      logical :: known = .false.   !< There are such rates, with nothing sudden since.
+      real(wp) :: dt = 0.0_wp      !< Step from them to the present ones, which both belong to [s].
+      type(rates_t) :: before
+      !> The present ones as the last step left them, where they are `based`: attempts of different length move them
+      !> from here.
+      type(rates_t) :: base
       logical :: based = .false.
-      real(wp), allocatable :: base_rate(:, :), base_s_rate(:)
-      real(wp) :: base_outflow(2) = 0.0_wp
    end type rate_memory_t
 contains
    !> Memory without rates of earlier steps.
-   pure function new_memory(fields, nodes, points) result(memory)
-      integer, intent(in) :: fields, nodes, points   !< Extents of its arrays.
+   pure function new_memory(nodes, points) result(memory)
+      integer, intent(in) :: nodes, points
       type(rate_memory_t) :: memory
 
-      allocate (memory%rate(fields, nodes), memory%s_rate(points), source=0.0_wp)
-      allocate (memory%base_rate(fields, nodes), memory%base_s_rate(points), source=0.0_wp)
+      allocate (memory%before%v(FIELDS, nodes), memory%before%s(points), source=0.0_wp)
    end function new_memory
 
    !> Exchanges a memory, made by new_memory, with an archive.
@@ -52,9 +57,9 @@ contains
       call archive%exchange('rates_known', memory%known, &
                             'rates of the step before are known, with nothing sudden since')
       call archive%exchange('rates_dt', memory%dt, 's', 'step from those rates to the present ones')
-      call archive%exchange('rate', memory%rate, 'm/s, kPa/s', 'rates of the unknowns one step back')
-      call archive%exchange('s_rate', memory%s_rate, '1/s', 'rates of saturation one step back')
-      call archive%exchange('outflow', memory%outflow, 'm3/s', 'flows out of the ground one step back')
+      call archive%exchange('rate', memory%before%v, 'm/s, kPa/s', 'rates of the unknowns one step back')
+      call archive%exchange('s_rate', memory%before%s, '1/s', 'rates of saturation one step back')
+      call archive%exchange('outflow', memory%before%outflow, 'm3/s', 'flows out of the ground one step back')
    end subroutine exchange_memory
 
    !> C of the leading error of a step for accelerations [-]. 1/12 + 3/8 (l_a - l_f)**2: docs/theory/host.md section
@@ -76,35 +81,41 @@ contains
    !> Moves the rates of the present state to where a step of another length expects them. docs/theory/host.md section
    !> 4.5. Rates stay in static steps and where none are known from before; in dynamic steps those of the displacements
    !> stay.
-   pure subroutine shift_rates(scheme, memory, v, s_rate, outflow)
+   pure subroutine shift_rates(scheme, memory, state)
       type(scheme_t), intent(in) :: scheme   !< Scheme of the step to come.
       type(rate_memory_t), intent(inout) :: memory
-      real(wp), intent(inout) :: v(:, :), s_rate(:)   !< (fields, nodes) rates [m/s, kPa/s]; (points) rate of S_w [1/s].
-      real(wp), intent(inout) :: outflow(:)   !< Flows out of the ground, which move as rates do [m3/s].
+      type(model_state_t), intent(inout) :: state
       real(wp) :: share
       integer :: first
 
-      if (.not. memory%based) then
-         memory%base_rate = v
-         memory%base_s_rate = s_rate
-         memory%base_outflow = outflow
-         memory%based = .true.
-      end if
+      if (.not. memory%based) memory%base = rates_t(state%v, state%s_rate, state%outflow)
+      memory%based = .true.
       if (.not. scheme%has_rates .or. .not. memory%known) return
-      first = merge(3, 1, scheme%has_inertia)
-      share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
-      v(first:, :) = memory%base_rate(first:, :) + share*(memory%base_rate(first:, :) - memory%rate(first:, :))
-      s_rate = memory%base_s_rate + share*(memory%base_s_rate - memory%s_rate)
-      outflow = memory%base_outflow + share*(memory%base_outflow - memory%outflow)
+      associate (base => memory%base, before => memory%before)
+         first = merge(DISPLACEMENTS + 1, 1, scheme%has_inertia)
+         share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
+         state%v(first:, :) = base%v(first:, :) + share*(base%v(first:, :) - before%v(first:, :))
+         state%s_rate = base%s + share*(base%s - before%s)
+         state%outflow = base%outflow + share*(base%outflow - before%outflow)
+      end associate
    end subroutine shift_rates
 
-   !> Errors of all unknowns in a step from x0 to x1; `known` says of which fields. docs/theory/host.md section 4.5. x,
-   !> v: (FIELDS, nodes) values and rates [m, kPa, per s]; a: (2, nodes) accelerations [m/s2]; at the start (0) and the
-   !> end (1) of the step.
-   pure subroutine local_errors(scheme, memory, x0, v0, a0, x1, v1, a1, error, known)
+   !> Moves the rates of the present state back to where the last step left them.
+   pure subroutine restore_rates(memory, state)
+      type(rate_memory_t), intent(in) :: memory
+      type(model_state_t), intent(inout) :: state
+
+      if (.not. memory%based) return
+      state%v = memory%base%v
+      state%s_rate = memory%base%s
+      state%outflow = memory%base%outflow
+   end subroutine restore_rates
+
+   !> Errors of all unknowns in a step; `known` says of which fields. docs/theory/host.md section 4.5.
+   pure subroutine local_errors(scheme, memory, old, new, error, known)
       type(scheme_t), intent(in) :: scheme
       type(rate_memory_t), intent(in) :: memory
-      real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :), v1(:, :), a1(:, :)
+      type(model_state_t), intent(in) :: old, new   !< Before and after the step.
       real(wp), intent(out) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]; 0 where not known.
       logical, intent(out) :: known(:)   !< (FIELDS)
       real(wp) :: off
@@ -112,21 +123,21 @@ contains
 
       error = 0.0_wp
       known = memory%known
-      associate (dt => scheme%dt)
+      associate (dt => scheme%dt, base => memory%base%v, before => memory%before%v)
          if (.not. scheme%has_rates) then
-            if (memory%known) error = static_error((x1 - x0)/dt, memory%rate, dt, memory%dt)
+            if (memory%known) error = static_error((new%x - old%x)/dt, before, dt, memory%dt)
             return
          end if
          first = 1
          if (scheme%has_inertia) then
-            first = 3
-            known(1:2) = .true.
-            error(1:2, :) = constant_of_accelerations(scheme)*dt**2*(a1 - a0)
+            first = DISPLACEMENTS + 1
+            known(:DISPLACEMENTS) = .true.
+            error(:DISPLACEMENTS, :) = constant_of_accelerations(scheme)*dt**2*(new%a - old%a)
          end if
          if (.not. memory%known) return
          off = scheme%l_f - scheme%l_p
-         error(first:, :) = constant_of_rates(scheme)*dt**3*((v1(first:, :) - v0(first:, :))/dt &
-                            - (memory%base_rate(first:, :) - memory%rate(first:, :))/memory%dt) &
+         error(first:, :) = constant_of_rates(scheme)*dt**3*((new%v(first:, :) - old%v(first:, :))/dt &
+                            - (base(first:, :) - before(first:, :))/memory%dt) &
                             /(0.5_wp*(dt + memory%dt) + off*(min(dt, LONGEST*memory%dt) - memory%dt))
       end associate
    end subroutine local_errors
@@ -144,34 +155,16 @@ contains
       error = BENT*share*dt**2*error
    end function static_error
 
-   !> Keeps the rates of the start of an accepted step. x: (fields, nodes) values at both ends of the step [m, kPa]; v0:
-   !> their rates at its start [1/s of it]; s_rate: (points) rate of S_w there [1/s]; outflow: flows out of the ground
-   !> there [m3/s]. In static steps the rates are those of the straight step.
-   pure subroutine remember(scheme, memory, x0, x1, v0, s_rate, outflow)
+   !> Keeps the rates of the start of an accepted step; of a static one they are those of the straight step.
+   pure subroutine remember(scheme, memory, old, new)
       type(scheme_t), intent(in) :: scheme
       type(rate_memory_t), intent(inout) :: memory
-      real(wp), intent(in) :: x0(:, :), x1(:, :), v0(:, :), s_rate(:), outflow(:)
+      type(model_state_t), intent(in) :: old, new   !< Before and after the step.
 
-      memory%rate = v0
-      if (.not. scheme%has_rates) memory%rate = (x1 - x0)/scheme%dt
-      memory%s_rate = s_rate
-      memory%outflow = outflow
+      memory%before = rates_t(old%v, old%s_rate, old%outflow)
+      if (.not. scheme%has_rates) memory%before%v = (new%x - old%x)/scheme%dt
       memory%dt = scheme%dt
       memory%based = .false.
       memory%known = .true.
    end subroutine remember
-
-   !> Something sudden: the rates before say nothing of those to come.
-   pure subroutine forget(memory)
-      type(rate_memory_t), intent(inout) :: memory
-
-      memory%known = .false.
-   end subroutine forget
-
-   !> Root mean square over the nodes. values: (components, nodes); the squares of all components are added up.
-   pure real(wp) function rms(values)
-      real(wp), intent(in) :: values(:, :)
-
-      rms = sqrt(sum(values**2)/max(1, size(values, 2)))
-   end function rms
 end module error_norms
