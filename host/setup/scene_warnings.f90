@@ -64,6 +64,7 @@ contains
       call look_at_units(scene)
       call look_at_regions(model, tension)
       call look_at_initials(model, tension)
+      call look_at_doubled_contacts(model)
       call warn_of_start(model, balance)
       call warn_of_boundaries(model)
       call warn_of_idle_keys(scene, model)
@@ -190,6 +191,27 @@ contains
          end associate
       end do
    end subroutine look_at_replaced_initials
+
+   !> Two contacts of the same two boundaries in one stage, in either order.
+   subroutine look_at_doubled_contacts(model)
+      type(model_t), intent(in) :: model
+      integer :: i, k
+
+      do i = 2, size(model%contacts)
+         associate (one => model%contacts(i))
+            do k = 1, i - 1
+               associate (other => model%contacts(k))
+                  if (.not. any(one%in_stage .and. other%in_stage)) cycle
+                  if (min(one%slave, one%master) /= min(other%slave, other%master)) cycle
+                  if (max(one%slave, one%master) /= max(other%slave, other%master)) cycle
+                  call print_warning(place_of(one)//'the contact '''//trim(one%name)//''' has the two boundaries '// &
+                     'of '''//trim(other%name)//''' in line '//whole(other%line)//': where both act their '// &
+                     'penalties add. One is enough, unless each has stages of its own.')
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine look_at_doubled_contacts
 
    !> Warns of boundary nodes at one place that no contact, tie or plate joins.
    subroutine look_at_slits(model)

@@ -269,6 +269,19 @@ def test_no_doubt_no_warning():
         check(f"water that gets heavier: {what}", [line.count("from 1 to 2") for line in told] == [1]*words, told)
 
 
+def test_contacts_of_the_same_boundaries():
+    again = "&contact name = 'again' slave = 'top' master = 'plate' penalty = 1e3 /\n"
+    stage = "&stage name = 'more' analysis = 'static' duration = 1 dt = 1 /\n"
+    doubled = TILTED.replace("&stage", again + "&stage")
+    told = [line for line in warnings(doubled, "--check") if "penalties add" in line]
+    words = ("'again'", "'face' in line 6")
+    check("two contacts of one pair are told", len(told) == 1 and all(word in told[0] for word in words), told)
+    apart = (doubled.replace("gap = 'nodal'", "stages = 'push'").replace("'plate' penalty = 1e3 /\n&stage", "'plate' "
+             "stages = 'more' /\n&stage").replace("&fix group = 'plate'", stage + "&fix group = 'plate'"))
+    told = [line for line in warnings(apart, "--check") if "penalties add" in line]
+    check("with stages of their own they are not", "'more'" in apart and told == [], told)
+
+
 def test_keys_of_mud_that_nothing_asks_for():
     told = warnings(SCENE.replace("toyoura.nml'", "toyoura.nml' P_a = 7 b_1 = 2 e_0 = 0.7"), "--check")
     for key, why in (("P_a", "the scene has no field p_c"), ("b_1", "the scene has no field p_c"),
