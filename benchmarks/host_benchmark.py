@@ -105,10 +105,6 @@ def table(head, lines):
 VARIANTS = {
     "as it is": [],
     "factors fresh": ["factors = 'fresh'"],
-    "ordering METIS": ["ordering = 'metis'"],
-    "ordering best": ["ordering = 'best'"],
-    "factors fresh, METIS": ["factors = 'fresh'", "ordering = 'metis'"],
-    "factors fresh, best": ["factors = 'fresh'", "ordering = 'best'"],
     "linear pressures (Taylor-Hood)": ["pressures = 'linear'"],
     "linear pressures, factors fresh": ["pressures = 'linear'", "factors = 'fresh'"],
     "quadrature 3": ["quadrature = 3"],
@@ -141,11 +137,9 @@ if "growth" in parts:
         mesh = [("r_cells = 4, 9", f"r_cells = {near}, {far}"), ("z_cells = 16", f"z_cells = {down}"),
                 ("r_ratio = 1, 1.3", f"r_ratio = 1, {1.3 ** (9 / far):.6f}"),
                 ("z_ratio = 0.85", f"z_ratio = {0.85 ** (16 / down):.6f}")]
-        for ordering in ("amd", "metis"):
-            for factors in ("fresh", "reuse"):
-                change = of_scene(f"factors = '{factors}'", f"ordering = '{ordering}'")
-                row = run("growth", f"{ordering}, factors {factors}", [*mesh, change], 2, 40)
-                growth.setdefault((near, ordering), []).append(row)
+        for factors in ("fresh", "reuse"):
+            row = run("growth", f"factors {factors}", [*mesh, of_scene(f"factors = '{factors}'")], 2, 40)
+            growth.setdefault(near, []).append(row)
 
 model = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo", encoding="utf-8")
               if line.startswith("model name")), platform.processor())
@@ -185,8 +179,8 @@ if measures:
              table(["variant", "iterations", "factorisations", "solutions", "entries in factors", "material",
                     "assembly", "factorisation", "solution", "in all", "ratio", "settlement [%]"], lines)]
 if growth:
-    # Figures of every size and ordering by name of the column.
-    columns = {(size, ordering): {
+    # Figures of every size by name of the column.
+    columns = {size: {
         "unknowns": middle([fresh], "unknowns"), "entries in factors [1e6]": middle([fresh], "entries") / 1e6,
         "numeric factorisation": each([fresh], "factorisation", "factorisations"),
         "solution by factors": each([fresh], "solution", "solutions"),
@@ -194,25 +188,23 @@ if growth:
         + each([fresh], "assembly", "iterations"),
         "memory": middle([fresh], "memory"), "iteration, factors fresh": each([fresh], "in all", "iterations"),
         "iteration, factors reused": each([again], "in all", "iterations"),
-        "factorisations": middle([again], "factorisations")} for (size, ordering), (fresh, again) in growth.items()}
+        "factorisations": middle([again], "factorisations")} for size, (fresh, again) in growth.items()}
     digits = {"entries in factors [1e6]": 2, "solution by factors": 1}
-    lines = [[f"{row['unknowns']:.0f}", ordering, *(f"{v:.{digits.get(k, 0)}f}" for k, v in list(row.items())[1:])]
-             for (_, ordering), row in columns.items()]
+    lines = [[f"{row['unknowns']:.0f}", *(f"{v:.{digits.get(k, 0)}f}" for k, v in list(row.items())[1:])]
+             for row in columns.values()]
     names = list(next(iter(columns.values())))
     text += ["## Growth\n40 steps, two threads; milliseconds; memory is the process's peak [MiB], factors reused in "
-             "the last two columns only.\n", table([names[0], "ordering", *names[1:]], lines)]
+             "the last two columns only.\n", table(names, lines)]
 
-    def exponent(column, ordering):
+    def exponent(column):
         """Over the last three sizes that came to their end."""
-        pairs = [(math.log(row["unknowns"]), math.log(row[column])) for (_, own), row in columns.items()
-                 if own == ordering and row[column] > 0]
+        pairs = [(math.log(row["unknowns"]), math.log(row[column])) for row in columns.values() if row[column] > 0]
         return (pairs[-1][1] - pairs[-3][1]) / (pairs[-1][0] - pairs[-3][0]) if len(pairs) > 2 else math.nan
 
     named = {"entries in factors": names[1], "numeric factorisation": names[2], "solution": names[3],
              "material and assembly": names[4], "memory": names[5]}
     text += ["Exponents over the last three sizes: " + "; ".join(
-        f"{name} " + ", ".join(f"{exponent(column, o):.2f} ({o})" for o in ("amd", "metis"))
-        for name, column in named.items()) + ".\n"]
+        f"{name} {exponent(column):.2f}" for name, column in named.items()) + ".\n"]
 (args.results / "host.md").write_text(tables.wrapped("# The host\n" + origin.partition("; ")[2] + "\n\n" + "\n".join(text)),
                                      encoding="utf-8")
 print("\n".join(text))

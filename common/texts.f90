@@ -86,7 +86,7 @@ contains
       integer, intent(in), optional :: digits   !< So many significant ones instead.
       character(:), allocatable :: text
       character(40) :: number
-      integer :: mark, n
+      integer :: mark, n, places
 
       n = 6
       if (present(digits)) n = digits
@@ -95,7 +95,12 @@ contains
       else if (abs(value) <= 0.0_wp) then
          text = '0'
       else if (abs(value) >= 1.0e-3_wp .and. abs(value) < 0.9999995e6_wp) then
-         write (number, '(f0.'//whole(max(0, n - 1 - floor(log10(abs(value)))))//')') value
+         places = n - 1 - floor(log10(abs(value)))
+         if (places >= 0) then
+            write (number, '(f0.'//whole(places)//')') value
+         else
+            write (number, '(f0.0)') anint(value/10.0_wp**(-places))*10.0_wp**(-places)
+         end if
          text = without_zeros(trim(number))
          if (text(1:1) == '.') text = '0'//text
          if (text(1:1) == '-' .and. text(2:2) == '.') text = '-0'//text(2:)

@@ -15,7 +15,7 @@ module boundary_conditions
    public :: load_at, force_of, plate_loads
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
-   real(wp), parameter :: SPACINGS = 8.0_wp       !< Of numbers, by which a sum of stages may miss it.
+   real(wp), parameter :: SPACINGS = 8.0_wp       !< Of numbers, by which a sum of stages may miss it; a step adds one.
 contains
    !> Nothing prescribed, nothing loaded; plates have their mass. Extents: see constraint_t.
    function new_constraint(model) result(constraint)
@@ -168,7 +168,7 @@ contains
       real(wp), intent(in) :: time   !< At the end of the step.
       real(wp) :: rounding_of_time
 
-      rounding_of_time = max(SPACINGS*spacing(time), ROUNDING*problem%at%nominal*problem%at%factor)
+      rounding_of_time = max((SPACINGS + problem%at%step)*spacing(time), ROUNDING*problem%at%nominal*problem%at%factor)
       acts = fix%in_stage(problem%at%stage) .and. time > fix%from + rounding_of_time .and. &
              time <= fix%until + rounding_of_time
    end function acts

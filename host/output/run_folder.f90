@@ -3,7 +3,7 @@
 !> with. A run holds a lock on the file `lock`, which the system takes back when its process ends, however it does. The
 !> file stays: were it removed, a run that has opened it would lock what the next one cannot see.
 module run_folder
-   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_ptr, c_null_char, c_null_ptr, c_associated
    use faults, only: fault_t, raise, EXIT_OUTPUT
    use field_files, only: check_mesh
    use files, only: make_folder
@@ -15,31 +15,34 @@ module run_folder
    public :: folder_observer_t
 
    type, extends(observer_t) :: folder_observer_t
-      integer(c_int) :: lock = -1   !< Number of the locked file; -1: there is none.
+      type(c_ptr) :: lock = c_null_ptr   !< The locked file; null: there is none.
    contains
       procedure :: hear
    end type folder_observer_t
 
    character(*), parameter :: LOCK_FILE = 'lock'
    integer(c_int), parameter :: ALONE = 6, FREE = 8   !< Operations of flock: exclusive without waiting, unlock.
-   integer(c_int), parameter :: ACCESS = 438          !< For all to read and write, as the user's mask allows.
 
    interface
-      integer(c_int) function creat(path, mode) bind(c)
-         import :: c_char, c_int
-         character(kind=c_char), intent(in) :: path(*)
-         integer(c_int), value :: mode
-      end function creat
+      type(c_ptr) function fopen(path, mode) bind(c)
+         import :: c_char, c_ptr
+         character(kind=c_char), intent(in) :: path(*), mode(*)
+      end function fopen
+
+      integer(c_int) function fileno(stream) bind(c)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: stream
+      end function fileno
 
       integer(c_int) function flock(file, operation) bind(c)
          import :: c_int
          integer(c_int), value :: file, operation
       end function flock
 
-      integer(c_int) function close_number(file) bind(c, name='close')
-         import :: c_int
-         integer(c_int), value :: file
-      end function close_number
+      integer(c_int) function fclose(stream) bind(c)
+         import :: c_int, c_ptr
+         type(c_ptr), value :: stream
+      end function fclose
    end interface
 contains
    !> Takes the folder, which a new run makes, and gives it free. Faults: EXIT_RESTART where it does not hold the run:
@@ -58,31 +61,31 @@ contains
          if (run%steps == 0) call make_folder(self%folder)
          call lock_folder(self%folder, self%lock, fault)
       case (ENDS)
-         if (self%lock >= 0) done = close_number(self%lock)
+         if (c_associated(self%lock)) done = fclose(self%lock)
       end select
    end subroutine hear
 
    !> Takes a folder. Fault EXIT_OUTPUT: another run writes to it, or this one cannot.
    subroutine lock_folder(folder, lock, fault)
       character(*), intent(in) :: folder
-      integer(c_int), intent(out) :: lock
+      type(c_ptr), intent(out) :: lock
       type(fault_t), intent(inout) :: fault
       integer(c_int) :: done
 
-      lock = creat(folder//'/'//LOCK_FILE//c_null_char, ACCESS)
-      if (lock < 0) then
+      lock = fopen(folder//'/'//LOCK_FILE//c_null_char, 'a'//c_null_char)   ! what there is stays
+      if (.not. c_associated(lock)) then
          call raise(fault, EXIT_OUTPUT, folder//'/'//LOCK_FILE//' cannot be written, and without it nothing keeps '// &
                     'another run out of the folder: choose another --output.')
          return
       end if
-      if (flock(lock, ALONE) == 0) return
-      if (flock(lock, FREE) /= 0) then
+      if (flock(fileno(lock), ALONE) == 0) return
+      if (flock(fileno(lock), FREE) /= 0) then
          call print_warning('the file system of '//folder//' has no locks: nothing keeps another run out of the '// &
                             'folder.')
          return
       end if
-      done = close_number(lock)
-      lock = -1
+      done = fclose(lock)
+      lock = c_null_ptr
       call raise(fault, EXIT_OUTPUT, 'Another run writes its results to '//folder//' (it holds the file '''// &
                  LOCK_FILE//''' there): wait for its end, or choose another --output.')
    end subroutine lock_folder

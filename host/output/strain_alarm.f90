@@ -19,7 +19,8 @@ module strain_alarm
       procedure :: hear
    end type strain_alarm_t
 
-   real(wp), parameter :: LARGE = 0.1_wp   !< Principal strain whose square is a hundredth.
+   !> Principal strain whose square is a hundredth, with some room for the rounding of one that is prescribed.
+   real(wp), parameter :: LARGE = 0.1_wp*(1 + 1.0e-6_wp)
 contains
    !> Tells once, at the end of a stage, on standard error, also where the run is quiet.
    subroutine hear(self, event, run, fault)
@@ -28,13 +29,18 @@ contains
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault
       real(wp) :: strain, largest, at(2)
-      integer :: e, g
+      integer :: e, g, first
 
       if (event /= STEP .or. self%told .or. .not. run%news%last) return
       largest = LARGE
-      associate (domain => run%domain, new => run%next)
+      associate (domain => run%domain, new => run%next, model => run%model)
+         first = 1 + findloc(model%stages(:run%at%stage - 1)%zero_displacements, .true., 1, back=.true.)
          do e = 1, size(domain%region_of)
             if (.not. is_present(new, e)) cycle
+            ! ground that has joined since then has strains that its displacements do not tell
+            if (allocated(model%ground)) then
+               if (.not. all(model%ground(e, first:run%at%stage))) cycle
+            end if
             do g = 1, domain%rule
                strain = principal(strain_of(domain%gauss(g, e), new%x(:DISPLACEMENTS, domain%mesh%t6(:, e))))
                if (strain <= largest) cycle

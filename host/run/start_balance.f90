@@ -112,7 +112,7 @@ contains
       type(model_t), intent(in) :: model
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
       logical :: held(TURN, size(model%domain%mesh%x, 2))
-      integer :: i
+      integer :: i, f
 
       held = held_in(model, 1)
       do i = 1, size(model%actions)
@@ -122,9 +122,11 @@ contains
          end associate
       end do
       held(:, model%domain%bodies) = .true.
-      do i = 1, size(forces)
-         if (model%dofs%field(i) <= DISPLACEMENTS) forces(i) = merge(0.0_wp, forces(i), &
-                                                                     held(model%dofs%field(i), model%dofs%node(i)))
+      ! Nodes that are tied share their unknowns: one that is held holds them for all.
+      do f = 1, DISPLACEMENTS
+         associate (at => pack(model%dofs%of(f, :), held(f, :)))
+            forces(pack(at, at > 0)) = 0.0_wp
+         end associate
       end do
    end subroutine let_go_of_held
 

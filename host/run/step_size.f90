@@ -343,6 +343,7 @@ contains
       ! The rate of a static step before holds still; a flow may have failed where something begins.
       if (has_rates(run%stage%kind)) run%control%memory%known = .false.
       run%at%factor = 1.0_wp
+      run%at%nominal = run%control%controller%dt
    end subroutine shorten_step
 
    !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
@@ -359,11 +360,12 @@ contains
          ! A first static step may have taken at once what acts from the start: its rate is none.
          if (c%fresh < merge(2, SETTLED, .not. has_rates(stage%kind))) c%memory%known = .false.
          run%at%cuts = max(0, run%at%cuts - 1)
+         if (breaks) then
+            call sudden(run%next%time, run)
+            c%controller%dt = min(c%controller%dt, max(dt*stage%step_tolerance, SHORTEST*stage%duration*LARGEST_FACTOR))
+            c%start_up = START_UP_STEPS*c%controller%dt
+         end if
          run%at%nominal = c%controller%dt
-         if (.not. breaks) return
-         call sudden(run%next%time, run)
-         c%controller%dt = min(c%controller%dt, max(dt*stage%step_tolerance, SHORTEST*stage%duration*LARGEST_FACTOR))
-         c%start_up = START_UP_STEPS*c%controller%dt
       end associate
    end subroutine keep_step
 end module step_size

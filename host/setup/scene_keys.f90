@@ -114,7 +114,7 @@ contains
    subroutine refuse_old_keys(group, fault)
       type(group_t), intent(in) :: group   !< &scene.
       type(fault_t), intent(inout) :: fault
-      character(*), parameter :: OLD(7) = [character(20) :: 'accuracy', 'mesh', 'budget', 'effects', &
+      character(*), parameter :: OLD(8) = [character(20) :: 'accuracy', 'mesh', 'budget', 'ordering', 'effects', &
          'effects_tolerance', 'effects_pilot_share', 'effects_on_warning']
       character(*), parameter :: MEASURES = ' --accuracy A" measures the errors of the answers, and refines steps '// &
          'and mesh until they are below A.'
@@ -129,6 +129,8 @@ contains
                    MEASURES
          else if (i <= 3) then
             text = 'leave it out; "mud_study accuracy '//trim(group%file)//MEASURES
+         else if (i == 4) then
+            text = 'leave it out; the equations are ordered by AMD, beyond 10,000 unknowns by METIS.'
          else
             text = 'leave it out, and give analysis, fields and gravity; "mud_study effects '//trim(group%file)// &
                    '" measures what each effect changes and writes the scene without those that do not matter.'

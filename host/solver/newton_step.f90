@@ -60,16 +60,19 @@ contains
    subroutine take_step(solution)
       type(solution_t), intent(inout) :: solution
       type(iterate_t) :: at
-      integer :: status
+      type(scheme_t) :: scheme
+      integer :: status, outcome
 
       call begin_iterate(solution, at)
       solution%log = log_t()
+      scheme = solution%scheme
       associate (s => solution, log => solution%log, system => solution%system)
          call begin_step(solution, at)
          if (log%outcome /= CONVERGED) return
          do
-            call make_equations(s%scheme, solution, at, log%outcome)
-            if (log%outcome /= CONVERGED) then
+            call make_equations(scheme, solution, at, outcome)
+            log%outcome = outcome
+            if (outcome /= CONVERGED) then
                if (.not. at%guessed .or. log%iterations > 0) return
                call drop_guess(solution, at)
                cycle
@@ -84,8 +87,9 @@ contains
                if (.not. at%with_slopes) then
                   at%with_slopes = .true.
                   s%assembly%source = AS_BEFORE
-                  call make_equations(s%scheme, solution, at, log%outcome)
-                  if (log%outcome /= CONVERGED) return
+                  call make_equations(scheme, solution, at, outcome)
+                  log%outcome = outcome
+                  if (outcome /= CONVERGED) return
                end if
             end if
             call constrain(solution%dofs, s%pattern, s%constraint, s%next%x, s%assembly%values, at%rhs)

@@ -5,7 +5,7 @@
 !> the boundary where it begins to act, undrained. The forces that it held before stay, so that only what departs from
 !> that state leaves as a wave. docs/theory/host.md section 7.4.
 module absorbing
-   use acting_places, only: facing_edges, acting_stages, held_in, TURN
+   use acting_places, only: facing_edges, acting_stages
    use archive, only: archive_t
    use boundary_conditions, only: prescribing_fixes
    use equation_assembly, only: assemble
@@ -115,8 +115,8 @@ contains
             if (self%sides(i)%repeats) cycle
             call raise(fault, EXIT_INPUT, place_of(self%sides(i))//'this &absorbing has edges of that of line '// &
                        whole(self%sides(k)%line)//', and their dashpots would count twice there. Another wave '// &
-                       'through the same ones needs the same group, stages, rho, c_p and c_s; else give every edge '// &
-                       'to one.')
+                       'through the same ones needs the same group, stages, rho, c_p and c_s (a &history ends it); '// &
+                       'else give every edge to one.')
             return
          end do
          call look_at_supports(model, self%sides(i))
@@ -150,7 +150,7 @@ contains
    subroutine look_at_supports(model, side)
       type(model_t), intent(in) :: model
       type(side_t), intent(in) :: side
-      logical :: held(TURN, size(model%domain%mesh%x, 2))
+      logical :: held(DISPLACEMENTS, size(model%domain%mesh%x, 2))
       character(*), parameter :: WORDS(DISPLACEMENTS) = ['u_r', 'u_z']
       real(wp) :: extent(DISPLACEMENTS)
       integer :: s, f
@@ -160,7 +160,7 @@ contains
          extent = [(maxval(x(f, nodes)) - minval(x(f, nodes)), f=1, DISPLACEMENTS)]
          do s = 1, size(model%stages)
             if (.not. acts(side, model, s)) cycle
-            held = held_in(model, s)
+            held = held_throughout(model, s)
             do f = 1, DISPLACEMENTS
                ! Ground that is held throughout has no motion along this axis.
                if (.not. all(held(f, nodes)) .or. all(held(f, reshape(t6, [size(t6)])))) cycle
@@ -174,6 +174,25 @@ contains
          end do
       end associate
    end subroutine look_at_supports
+
+   !> Motions that a &fix prescribes from the start of a stage to its end.
+   pure function held_throughout(model, number) result(held)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number   !< Of the stage.
+      logical :: held(DISPLACEMENTS, size(model%domain%mesh%x, 2))
+      integer :: i
+
+      held = .false.
+      associate (stage => model%stages(number))
+         do i = 1, size(model%fixes)
+            associate (fix => model%fixes(i))
+               if (fix%field > DISPLACEMENTS .or. .not. fix%in_stage(number)) cycle
+               if (fix%from > stage%start .or. fix%until < stage%start + stage%duration) cycle
+               held(fix%field, model%domain%mesh%groups(fix%group)%nodes) = .true.
+            end associate
+         end do
+      end associate
+   end function held_throughout
 
    !> Room for the dashpots of the boundaries, and the unknowns that they hold.
    subroutine begin_run(self, problem, fault)
@@ -401,7 +420,7 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      if (self%at_start) call hold_ground(self, problem, fault)
+      if (self%at_start) call hold_ground(self, dt, problem, fault)
       self%at_start = .false.
       associate (c => problem%constraint, now => problem%state%time)
          do i = 1, size(self%sides)
@@ -430,8 +449,9 @@ contains
    !> Sets the dashpots of sides that act in a stage and did not in the one before, and the forces on them.
    !> docs/theory/host.md section 7.4. Fault EXIT_MATERIAL: the ground has no stiffness, or its material refuses its own
    !> state at rest.
-   subroutine hold_ground(self, problem, fault)
+   subroutine hold_ground(self, dt, problem, fault)
       class(absorbing_t), intent(inout) :: self
+      real(wp), intent(in) :: dt   !< Of the first step.
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
       logical :: begin_to_act(size(self%sides))
@@ -463,21 +483,35 @@ contains
             return
          end if
       end associate
-      call share_forces(self%sides, begin_to_act, problem)
+      call share_forces(self%sides, begin_to_act .and. .not. self%sides%repeats, dt, problem)
       call copy_state(problem%state, problem%next)
    end subroutine hold_ground
 
    !> What the balance at rest lacks is held by the sides that begin. Where two of them meet each has the tractions on
-   !> its own edges, so that it can end alone, and a share of what these leave in proportion to them; beside a &fix it
-   !> has these alone.
-   subroutine share_forces(sides, begin_to_act, problem)
+   !> its own edges, so that it can end alone, and a share of what these leave in proportion to them; at the corner with
+   !> a &fix of other ground it has these alone.
+   subroutine share_forces(sides, begin_to_act, dt, problem)
       type(side_t), intent(inout) :: sides(:)
-      logical, intent(in) :: begin_to_act(:)
+      logical, intent(in) :: begin_to_act(:)      !< Those whose dashpots do.
+      real(wp), intent(in) :: dt                  !< Of the first step.
       type(problem_t), intent(inout) :: problem   !< After the assembly at rest.
       real(wp), dimension(problem%dofs%n) :: missing, left, weight, share
-      integer :: holders(problem%dofs%n), by(problem%dofs%n), air_by(size(problem%domain%mesh%x, 2)), i
+      logical :: elsewhere_held(problem%dofs%n)
+      integer :: holders(problem%dofs%n), by(problem%dofs%n), air_by(size(problem%domain%mesh%x, 2)), i, f
 
-      call prescribing_fixes(problem, problem%state%time, by, air_by)
+      call prescribing_fixes(problem, problem%state%time + dt, by, air_by)
+      elsewhere_held = by > 0
+      do i = 1, size(sides)
+         if (.not. begin_to_act(i)) cycle
+         do f = 1, size(problem%model%fixes)
+            associate (groups => problem%domain%mesh%groups)
+               associate (own => groups(sides(i)%group)%nodes, of_fix => groups(problem%model%fixes(f)%group)%nodes)
+                  if (count(is_one_of(own, of_fix)) < size(own)) cycle   ! the &fix does not hold the whole side
+               end associate
+            end associate
+            where (sides(i)%held .and. by == f) elsewhere_held = .false.
+         end do
+      end do
       associate (c => problem%constraint)
          missing = c%load_0 - problem%assembly%residual - c%offset
          holders = 0
@@ -490,7 +524,7 @@ contains
             left = left - sides(i)%carried
             weight = weight + abs(sides(i)%carried)
          end do
-         where (by > 0) left = 0.0_wp
+         where (elsewhere_held) left = 0.0_wp
          do i = 1, size(sides)
             if (.not. begin_to_act(i)) cycle
             associate (side => sides(i))
@@ -498,7 +532,7 @@ contains
                where (weight > 0.0_wp) share = abs(side%carried)/weight
                where (.not. side%held)
                   side%carried = 0.0_wp
-               elsewhere (holders == 1 .and. by == 0)
+               elsewhere (holders == 1 .and. .not. elsewhere_held)
                   side%carried = missing
                elsewhere
                   side%carried = side%carried + share*left
@@ -508,6 +542,15 @@ contains
          end do
       end associate
    end subroutine share_forces
+
+   !> Which numbers of a list are in another one.
+   pure function is_one_of(numbers, list) result(found)
+      integer, intent(in) :: numbers(:), list(:)
+      logical :: found(size(numbers))
+      integer :: i
+
+      found = [(any(list == numbers(i)), i=1, size(numbers))]
+   end function is_one_of
 
    !> Forces of the total stress of the elements behind a side, mean of their points, on its edges [kN]. (unknowns)
    function tractions(problem, side) result(force)

@@ -161,6 +161,34 @@ def test_ground_behind_an_absorbing_side_stays_at_rest():
         (whole / name).read_bytes() == before[name] for name in names))
 
 
+def test_ground_with_its_weight_stays_at_rest():
+    # Its stress grows with depth, so that the mean of an element is not the traction on its edge. Two waves through one
+    # boundary, both of nothing, and supports of whole sides that end as the sides begin to absorb, or while they do.
+    ground = """&scene name = 'w' geometry = 'plane_strain' fields = 'u' gravity = 9.81 /
+&mesh r = 0, 4 r_cells = 2 z = -4, 0 z_cells = 4 /
+&elastic name = 'soil' young = 1e5 poisson = 0.3 /
+&region material = 'soil' void_ratio = 0.6 rho_s = 2.65 /
+&initial stress = 'geostatic' k_0 = 0.5 surface = 0 /
+&history name = 'none' times = 0, 9 values = 0, 0 /
+&point name = 'top' r = 2 z = 0 /
+&point name = 'corner' r = 4 z = -4 /
+&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 tolerance = 1e-8 /
+""" + stage("quake", 0.2, 0.01)
+    sides = "".join(f"&absorbing group = '{side}' stages = 'quake' /\n" for side in ("left", "right"))
+    bottom = "&absorbing group = 'bottom' stages = 'quake' {} /\n"
+    held = "".join(f"&fix group = '{side}' field = '{field}' {{0}} /\n" for side, field in (
+        ("left", "u_r"), ("right", "u_r"), ("bottom", "u_z"), ("bottom", "u_r")))
+    waves = bottom.format("v_r = 0.1 history = 'none'") + bottom.format("v_z = 0.1 history = 'none'")
+    for case, text in (("two waves", held.format("stages = 'rest'") + sides + waves),
+                       ("ends with the stage", held.format("until = 1") + sides + bottom.format("")),
+                       ("ends within", held.format("until = 1.1") + sides + bottom.format("")),
+                       ("the base alone", held.format("until = 1.1") + bottom.format("") + "".join(
+                           f"&fix group = '{side}' field = 'u_r' from = 1.1 /\n" for side in ("left", "right")))):
+        h, _ = run(ground + text, "weight_" + case.replace(" ", "_"))
+        moved = max(np.abs(h[f"{point}.{u}"]).max() for point in ("top", "corner") for u in ("u_r", "u_z"))
+        check(f"{case}: nothing moves", moved < 1e-12, moved)
+
+
 def test_a_side_that_ends_takes_its_share_of_a_corner_with_it():
     # A uniform stress, sides that begin together or one after the other, and in place of the one that ends the pressure
     # that it held: nothing moves. The support that holds the base beside a side that begins is released as well.

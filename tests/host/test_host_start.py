@@ -391,3 +391,21 @@ def test_pulses_that_are_over_and_plates():
     check("a plate that is pulled up", len(said("lwd", up, "nothing presses the plate 'p' down")) == 1)
     held = up + "&fix group = 'p' field = 'u_z' value = -1e-4 /\n"
     check("one that a &fix moves is no doubt", not said("lwd", held, "nothing presses"))
+
+
+def test_nodes_that_share_an_unknown_are_held_by_one_of_them():
+    # A rigid plate is joined to the top; its motion is held at the top of one side alone.
+    done = start("joined", """&scene name = 'joined' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, 5 r_cells = 5 z = 0, 5 z_cells = 5 /
+&elastic name = 'soil' young = 2e4 poisson = 0.25 /
+&region material = 'soil' void_ratio = 0.65 /
+&initial stress = 'uniform' sigma = -50, -50, -50 /
+&stage name = 'a' analysis = 'static' duration = 1 dt = 1 /
+&plate name = 'p' group = 'top' mass = 1 /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'bottom' field = 'u_r' /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'right' field = 'u_z' /
+""")
+    check("it is in balance", done.returncode == 0 and told(done) == [], done.stderr)

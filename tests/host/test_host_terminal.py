@@ -138,6 +138,7 @@ def test_a_second_run_in_a_folder_is_refused_while_the_first_lives():
     (out / "lock").write_text("what a program left here\n")
     free = run(work / "small.nml", out, "--quiet")
     check("a file that nobody holds is taken over", free.returncode == 0, free.stderr)
+    check("and stays what it is", (out / "lock").read_text() == "what a program left here\n")
     with open(out / "lock", "w") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         check("one that another process holds is not", run(work / "small.nml", out).returncode == 4)

@@ -75,6 +75,16 @@ def test_large_strains_are_told_once():
         told = start("strained", block + more).stderr
         check(f"{strain or 'nothing'} told", told.count("the ground is strained") == bool(strain)
               and (f"one, time 1 s: the ground is strained by up to {strain} %" in told) == bool(strain), told)
+    # A prescribed tenth is not above a tenth, and ground that joins has not the settlement of what it stands on.
+    exact = "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n" \
+            "&fix group = 'top' field = 'u_z' value = -0.1 /\n"
+    joined = block.replace("z = 0, 1 z_cells = 1", "z = 0, 10, 10.5 z_cells = 5, 1").replace(
+        "&region material = 'm'", "&region group = 'block_1_2' material = 'm' void_ratio = 0 stages = 'two' /\n"
+        "&region group = 'block_1_1' material = 'm'").replace("fields = 'u'", "fields = 'u' gravity = 9.81").replace(
+        "young = 1e4", "young = 5e3") + "&fix group = 'all' field = 'u_r' /\n&fix group = 'bottom' field = 'u_z' /\n"
+    for what, text in (("a tenth", block + exact), ("what joins", joined)):
+        told = start("strained", text)
+        check(f"{what} is not told", told.returncode == 0 and "strained" not in told.stderr, told.stderr)
 
 
 DOUBTS = [

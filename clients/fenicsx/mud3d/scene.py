@@ -64,7 +64,7 @@ WORDS = {
 }
 #: Keys of mud_host about its own way to compute, and of air, which rests here: they change no answer.
 IGNORED = {("fluids", "k_a"), ("fluids", "eta_a"), ("fluids", "gas"), ("fluids", "p_ref"), ("permeability", "c"),
-           ("permeability", "k_ra"), ("scene", "threads"), ("scene", "factors"), ("scene", "ordering"),
+           ("permeability", "k_ra"), ("scene", "threads"), ("scene", "factors"),
            ("mud", "tangent"), ("stage", "predictor"), ("stage", "output_dt"), ("stage", "created_energy")}
 
 
