@@ -13,7 +13,7 @@ module acting_places
    use triangle_mesh, only: group_of_t
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, nodes_of_ground, held_in, check_actions, TURN
+   public :: facing_edges, acting_stages, nodes_of_ground, held_in, are_in, share_an_edge, check_actions, TURN
 
    integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
 
@@ -182,19 +182,46 @@ contains
       if (any(there)) there(model%domain%bodies) = .true.
    end function nodes_of_ground
 
-   !> Motions of nodes that a &fix holds or moves in a stage. (TURN, nodes)
-   pure function held_in(model, number) result(held)
+   !> Nodes of a group. (nodes)
+   pure function are_in(model, group) result(inside)
       type(model_t), intent(in) :: model
-      integer, intent(in) :: number   !< Of the stage.
-      logical :: held(TURN, size(model%domain%mesh%x, 2))
+      integer, intent(in) :: group   !< Of the mesh.
+      logical :: inside(size(model%domain%mesh%x, 2))
+
+      inside = .false.
+      inside(model%domain%mesh%groups(group)%nodes) = .true.
+   end function are_in
+
+   !> Whether a group has all nodes of an edge of a boundary: one that only ends on it has not.
+   pure logical function share_an_edge(model, boundary, group) result(shared)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: boundary, group   !< Of the mesh.
+      integer :: e
+
+      associate (edges => model%domain%mesh%groups(boundary)%edges, inside => are_in(model, group))
+         shared = any([(all(inside(edges(:, e))), e=1, size(edges, 2))])
+      end associate
+   end function share_an_edge
+
+   !> Motions of nodes that a &fix holds or moves in a stage, or from its start to its end. (TURN, nodes)
+   pure function held_in(model, number, throughout) result(held)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: number                !< Of the stage.
+      logical, intent(in), optional :: throughout
+      logical :: held(TURN, size(model%domain%mesh%x, 2)), whole
       integer :: i
 
       held = .false.
-      do i = 1, size(model%fixes)
-         associate (fix => model%fixes(i))
-            if (fix%field <= DISPLACEMENTS .and. fix%in_stage(number)) &
+      whole = .false.
+      if (present(throughout)) whole = throughout
+      associate (stage => model%stages(number))
+         do i = 1, size(model%fixes)
+            associate (fix => model%fixes(i))
+               if (fix%field > DISPLACEMENTS .or. .not. fix%in_stage(number)) cycle
+               if (whole .and. (fix%from > stage%start .or. fix%until < stage%start + stage%duration)) cycle
                held(merge(TURN, fix%field, fix%of_body), model%domain%mesh%groups(fix%group)%nodes) = .true.
-         end associate
-      end do
+            end associate
+         end do
+      end associate
    end function held_in
 end module acting_places

@@ -12,7 +12,7 @@ module boundary_conditions
    private
    public :: new_constraint, constrain_step, complete_constraint, acts, follow_accelerations, &
              starting_accelerations, prescribing_fixes, forces_of_supports
-   public :: load_at, force_of, plate_loads
+   public :: load_at, force_of, plate_loads, SPACINGS
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
    real(wp), parameter :: SPACINGS = 8.0_wp       !< Of numbers, by which a sum of stages may miss it; a step adds one.

@@ -5,6 +5,7 @@ module start_look
    use kinds, only: wp, PI
    use acting_places, only: nodes_of_ground, held_in
    use generalised_alpha, only: has_rates, has_inertia
+   use boundary_conditions, only: SPACINGS
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
    use warnings, only: print_warning
@@ -19,7 +20,6 @@ module start_look
    public :: warn_of_start
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp   !< Of a pressure.
-   real(wp), parameter :: SPACINGS = 8.0_wp      !< Of numbers, by which a sum of stages may miss a time.
    real(wp), parameter :: AT_ONCE = 0.05_wp      !< Share of the largest velocity of a motion: no start from rest.
    real(wp), parameter :: HARD = 1.0e4_wp        !< [kPa] Of a plate; above it a force in N is likely.
 contains

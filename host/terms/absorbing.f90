@@ -5,7 +5,7 @@
 !> the boundary where it begins to act, undrained. The forces that it held before stay, so that only what departs from
 !> that state leaves as a wave. docs/theory/host.md section 7.4.
 module absorbing
-   use acting_places, only: facing_edges, acting_stages
+   use acting_places, only: facing_edges, acting_stages, are_in, held_in, share_an_edge, TURN
    use archive, only: archive_t
    use boundary_conditions, only: prescribing_fixes
    use equation_assembly, only: assemble
@@ -110,7 +110,9 @@ contains
       if (.not. self%wanted) return
       do i = 1, size(self%sides)
          do k = 1, i - 1
-            if (.not. share_an_edge(self%sides(i), self%sides(k))) cycle
+            if (.not. any(acting_stages(model, self%sides(i)%action_t) .and. &
+                          acting_stages(model, self%sides(k)%action_t))) cycle
+            if (.not. share_an_edge(model, self%sides(i)%group, self%sides(k)%group)) cycle
             self%sides(i)%repeats = are_alike(self%sides(i), self%sides(k))
             if (self%sides(i)%repeats) cycle
             call raise(fault, EXIT_INPUT, place_of(self%sides(i))//'this &absorbing has edges of that of line '// &
@@ -122,19 +124,6 @@ contains
          call look_at_supports(model, self%sides(i))
       end do
    contains
-      pure logical function share_an_edge(a, b)
-         type(side_t), intent(in) :: a, b
-         integer :: e
-
-         share_an_edge = .false.
-         if (.not. any(acting_stages(model, a%action_t) .and. acting_stages(model, b%action_t))) return
-         associate (groups => model%domain%mesh%groups)
-            do e = 1, size(groups(a%group)%edges, 2)
-               share_an_edge = share_an_edge .or. any(groups(b%group)%edges(3, :) == groups(a%group)%edges(3, e))
-            end do
-         end associate
-      end function share_an_edge
-
       pure logical function are_alike(a, b)
          type(side_t), intent(in) :: a, b
          integer :: s
@@ -150,7 +139,7 @@ contains
    subroutine look_at_supports(model, side)
       type(model_t), intent(in) :: model
       type(side_t), intent(in) :: side
-      logical :: held(DISPLACEMENTS, size(model%domain%mesh%x, 2))
+      logical :: held(TURN, size(model%domain%mesh%x, 2))
       character(*), parameter :: WORDS(DISPLACEMENTS) = ['u_r', 'u_z']
       real(wp) :: extent(DISPLACEMENTS)
       integer :: s, f
@@ -160,7 +149,7 @@ contains
          extent = [(maxval(x(f, nodes)) - minval(x(f, nodes)), f=1, DISPLACEMENTS)]
          do s = 1, size(model%stages)
             if (.not. acts(side, model, s)) cycle
-            held = held_throughout(model, s)
+            held = held_in(model, s, throughout=.true.)
             do f = 1, DISPLACEMENTS
                ! Ground that is held throughout has no motion along this axis.
                if (.not. all(held(f, nodes)) .or. all(held(f, reshape(t6, [size(t6)])))) cycle
@@ -174,25 +163,6 @@ contains
          end do
       end associate
    end subroutine look_at_supports
-
-   !> Motions that a &fix prescribes from the start of a stage to its end.
-   pure function held_throughout(model, number) result(held)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: number   !< Of the stage.
-      logical :: held(DISPLACEMENTS, size(model%domain%mesh%x, 2))
-      integer :: i
-
-      held = .false.
-      associate (stage => model%stages(number))
-         do i = 1, size(model%fixes)
-            associate (fix => model%fixes(i))
-               if (fix%field > DISPLACEMENTS .or. .not. fix%in_stage(number)) cycle
-               if (fix%from > stage%start .or. fix%until < stage%start + stage%duration) cycle
-               held(fix%field, model%domain%mesh%groups(fix%group)%nodes) = .true.
-            end associate
-         end do
-      end associate
-   end function held_throughout
 
    !> Room for the dashpots of the boundaries, and the unknowns that they hold.
    subroutine begin_run(self, problem, fault)
@@ -504,12 +474,10 @@ contains
       do i = 1, size(sides)
          if (.not. begin_to_act(i)) cycle
          do f = 1, size(problem%model%fixes)
-            associate (groups => problem%domain%mesh%groups)
-               associate (own => groups(sides(i)%group)%nodes, of_fix => groups(problem%model%fixes(f)%group)%nodes)
-                  if (count(is_one_of(own, of_fix)) < size(own)) cycle   ! the &fix does not hold the whole side
-               end associate
+            associate (in_fix => are_in(problem%model, problem%model%fixes(f)%group))
+               if (.not. all(in_fix(problem%domain%mesh%groups(sides(i)%group)%nodes))) cycle
             end associate
-            where (sides(i)%held .and. by == f) elsewhere_held = .false.
+            where (sides(i)%held .and. by == f) elsewhere_held = .false.   ! the &fix holds the whole side
          end do
       end do
       associate (c => problem%constraint)
@@ -542,15 +510,6 @@ contains
          end do
       end associate
    end subroutine share_forces
-
-   !> Which numbers of a list are in another one.
-   pure function is_one_of(numbers, list) result(found)
-      integer, intent(in) :: numbers(:), list(:)
-      logical :: found(size(numbers))
-      integer :: i
-
-      found = [(any(list == numbers(i)), i=1, size(numbers))]
-   end function is_one_of
 
    !> Forces of the total stress of the elements behind a side, mean of their points, on its edges [kN]. (unknowns)
    function tractions(problem, side) result(force)

@@ -4,6 +4,7 @@
 !> start of a step from the displacements there, so that a step is smooth and a restart decides the same.
 !> docs/theory/contact.md section 5.
 module contact_drainage
+   use acting_places, only: share_an_edge
    use exit_codes, only: EXIT_CONVERGENCE
    use kinds, only: wp
    use key_table, only: key_table_t
@@ -71,23 +72,6 @@ contains
          trim(model%contacts(number)%name)//': drainage = ''state'' releases &fix of p_w, p_c or p_a on the slave, '// &
          'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')
    end subroutine build_group
-
-   !> Whether a group has all nodes of an edge of the slave: a boundary that only ends on it does not give way.
-   pure logical function share_an_edge(model, slave, group) result(shared)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: slave, group
-      logical, allocatable :: in_group(:)
-      integer :: e
-
-      allocate (in_group(size(model%domain%mesh%x, 2)), source=.false.)
-      in_group(model%domain%mesh%groups(group)%nodes) = .true.
-      shared = .false.
-      associate (edges => model%domain%mesh%groups(slave)%edges)
-         do e = 1, size(edges, 2)
-            shared = shared .or. all(in_group(edges(:, e)))
-         end do
-      end associate
-   end function share_an_edge
 
    !> The impervious nodes at the displacements that the step starts from. What the last evaluation of the contacts left
    !> behind stays. docs/theory/contact.md section 5. Fault EXIT_CONVERGENCE: a kernel refuses the displacements.

@@ -311,7 +311,7 @@ CONTACT = [
     ("drainage without pressure", (DRAINAGE, "sealed = t%probe%pressure > 0.0_wp", "sealed = t%probe%weight > 0.0_wp")),
     ("a released node stays so", (DRAINAGE, "constraint%released = .false.\n      do c", "do c")),
     ("a boundary that touches the slave gives way too",
-     (DRAINAGE, "shared .or. all(in_group(edges(:, e)))", "shared .or. any(in_group(edges(:, e)))")),
+     ("model/acting_places.f90", "(all(inside(edges(:, e))), e=", "(any(inside(edges(:, e))), e=")),
     ("drainage in every stage", (DRAINAGE, " .or. .not. t%acts) cycle", ") cycle")),
 ]
 
