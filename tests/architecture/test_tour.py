@@ -19,7 +19,7 @@ def bodies(folder):
 def missing(names, sources):
     """Pairs of which the first does not call the second."""
     return [(a, b) for a, b in zip(names, names[1:])
-            if not any(re.search(rf"\bcall {b}\(", body) for body in sources.get(a, []))]
+            if not any(re.search(rf"\bcall (\w+%)?{b}\(", body) for body in sources.get(a, []))]
 
 
 def check_way(goal, folder, count):
@@ -38,7 +38,7 @@ def test_the_calls_from_umat_to_the_direction_equation_are_those_of_the_tour():
 
 
 def test_the_calls_from_the_host_to_a_law_are_those_of_the_tour():
-    check_way("the law", "host", ("Eight", 8))
+    check_way("the law", "host", ("Nine", 9))
 
 
 def test_a_scene_has_nine_stops_of_which_main_calls_the_first():
