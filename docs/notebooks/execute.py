@@ -3,7 +3,8 @@
 """Executes the notebooks of this folder and writes each as a page of the manual: execute.py [--check] [NAME...]
 
    Without NAME all of them. A notebook (.ipynb, any Jupyter opens it) keeps the outputs of its cells; the page beside
-   it (.md, with pictures) shows the same. Cells run in one Python process without Jupyter, in a folder of their own.
+   it (.md, with pictures) shows the same. Cells run in one Python process without Jupyter, in a folder of their own. As
+   in Jupyter, the value of the last line of a cell is no output where it ends with a semicolon.
    --check   executes nothing: exit code 1 if a page is not what its notebook holds
 """
 import ast
@@ -35,6 +36,7 @@ def executed(notebook):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
+    plt.rcdefaults()   # whatever a notebook before this one has set
     space, count = {"__name__": "__main__"}, 0
     for cell in notebook["cells"]:
         if cell["cell_type"] != "code":
@@ -54,7 +56,7 @@ def executed(notebook):
             data = {"image/png": base64.b64encode(picture.getvalue()).decode()}
             outputs.append({"output_type": "display_data", "data": data, "metadata": {}})
         plt.close("all")
-        if value is not None and not hasattr(value, "savefig"):
+        if value is not None and not hasattr(value, "savefig") and not source(cell).rstrip().endswith(";"):
             outputs.append({"output_type": "execute_result", "execution_count": count, "metadata": {},
                             "data": {"text/plain": lines(repr(value))}})
         cell["outputs"], cell["execution_count"] = outputs, count

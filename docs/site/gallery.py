@@ -3,10 +3,12 @@
 
 All of it is read from the page's README.md, which `verification/run --update` keeps; nothing is repeated by hand.
 """
+import posixpath
 import re
 
 SECTIONS = {"material": "Material: element tests", "host": "Finite elements", "studies": "Studies"}
 BLOCK = r"<!-- made: {} -->\n(.*?)<!-- end -->"
+LINK = re.compile(r"(?<=\]\()(?![a-z]+:|#)[^)\s]+")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)]+\.(?:png|svg))\)")
 MOST_CHECKS = 6
 
@@ -22,17 +24,22 @@ def block(text, mark):
     return found[1] if found else ""
 
 
+def seen_from_top(text, folder):
+    """The text of a page of a folder, with what it links to as a page at the top of the tree names it."""
+    return LINK.sub(lambda found: posixpath.normpath(posixpath.join(folder, found[0])), text)
+
+
 def entry(root, folder):
     """The part of one page; None if it declares nothing."""
-    path = folder / "README.md"
-    text = path.read_text(encoding="utf-8")
+    place = folder.relative_to(root).as_posix()
+    text = seen_from_top((folder / "README.md").read_text(encoding="utf-8"), place)
     facts = dict(row[:2] for row in rows(block(text, "page")))
     if "claim" not in facts:
         return None
-    link = path.relative_to(root).as_posix()
+    link = f"{place}/README.md"
     lines = [f"### [{text.splitlines()[0].lstrip('# ')}]({link})", ""]
     if picture := PICTURE.search(text):
-        lines += [f"![{folder.name}]({(folder / picture[1]).resolve().relative_to(root).as_posix()})", ""]
+        lines += [f"![{folder.name}]({picture[1]})", ""]
     kind = ", ".join(re.findall(r"\*\*([^*]+)\*\*", facts["kind"]))
     seconds = facts["run"].split(": ", 1)[-1]
     lines += [f"**{facts['claim'][0].upper()}{facts['claim'][1:]}.**", "",

@@ -15,6 +15,7 @@ COPIED = (".png", ".svg", ".ipynb")   # beside the page, as they are
 # Headings of the margin for pages that the front page does not list; the last takes what is left.
 REST = {"Evidence: element tests": "verification/material/", "Evidence: finite elements": "verification/host/",
         "Evidence: studies": "verification/studies/", "Other programs": "clients/", "Further pages": ""}
+ORPHAN = "---\norphan: true\n---\n"   # the head of a page that shows a source and stands in no margin
 LANGUAGES = {".py": "python", ".f90": "fortran", ".pf": "none", ".h": "c", ".c": "c", ".toml": "toml"}
 
 
@@ -38,7 +39,7 @@ def without_code(text):
 def source_page(name, path):
     """A source that a page links to, as a page of its own."""
     language = LANGUAGES.get(path.suffix, "none")
-    return f"---\norphan: true\n---\n# `{name}`\n\n```````{language}\n{path.read_text(encoding='utf-8')}\n```````\n"
+    return f"{ORPHAN}# `{name}`\n\n```````{language}\n{path.read_text(encoding='utf-8')}\n```````\n"
 
 
 def staged(root, pages, name):

@@ -28,6 +28,23 @@ def test_there_are_three_notebooks():
         check(f"{name} is a notebook that was executed", held["nbformat"] == 4 and all(
             cell["execution_count"] for cell in held["cells"] if cell["cell_type"] == "code"))
         check(f"the page of {name} is what the notebook holds", execute.same(folder / f"{name}.ipynb"))
+        shown = re.findall(r" object at 0x[0-9a-f]+", json.dumps([cell.get("outputs") for cell in held["cells"]]))
+        check(f"{name} shows no address, which another run would not repeat", not shown, shown)
+
+
+def planted(*sources):
+    """The outputs of cells that run as a notebook, those of a cell as one text."""
+    cells = [{"cell_type": "code", "source": [text]} for text in sources]
+    return [json.dumps(cell["outputs"]) for cell in execute.executed({"cells": cells})["cells"]]
+
+
+def test_a_cell_shows_its_value_and_no_other_notebook():
+    check("a value is an output, not so behind a semicolon", [bool(json.loads(text)) for text in planted(
+        "7 * 6", "7 * 6;", "7 * 6;  \n")] == [True, False, False])
+    look = "import matplotlib\nmatplotlib.rcParams['font.size']"
+    first, = planted(look)
+    planted("import matplotlib\nmatplotlib.rcParams['font.size'] = 3")
+    check("pictures do not take the style of the notebook before", planted(look) == [first], first)
 
 
 @loads_library
