@@ -3,7 +3,7 @@
 !> displacements that are zeroed, plates, pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
-   use acting_places, only: nodes_of_ground, held_in
+   use acting_places, only: nodes_of_ground, given_in
    use generalised_alpha, only: has_rates, has_inertia
    use boundary_conditions, only: SPACINGS
    use given_pressures, only: water, suction
@@ -120,7 +120,7 @@ contains
       do s = 2, size(model%stages)
          if (.not. has_inertia(model%stages(s)%kind)) cycle
          if (all(model%ground(:, s) .eqv. model%ground(:, s - 1))) cycle
-         associate (held => held_in(model, s))
+         associate (held => given_in(model, s))
             if (any(held(AT_U_Z, :) .and. nodes_of_ground(model, s))) cycle
          end associate
          call print_warning('Regions join or leave with the dynamic stage '//trim(model%stages(s)%name)//', where '// &
@@ -172,7 +172,7 @@ contains
             if (fix%field /= AT_P_W .or. fix%hold) cycle
             do s = 1, size(model%stages)
                if (.not. (fix%in_stage(s) .and. has_rates(model%stages(s)%kind))) cycle
-               held = held_in(model, s)
+               held = given_in(model, s)
                pressed = nodes_under_pressure(model, s)
                bare = 0
                most = 0.0_wp
