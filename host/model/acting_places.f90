@@ -5,7 +5,6 @@ module acting_places
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
    use kinds, only: wp
-   use generalised_alpha, only: has_inertia
    use model_types, only: model_t, action_t
    use scene_parts, only: place_of, PRESCRIBED_OF_BODY
    use texts, only: short, whole
@@ -52,7 +51,7 @@ contains
       type(action_t), intent(in) :: action
       logical :: acting(size(model%stages))
 
-      acting = action%in_stage .and. (has_inertia(model%stages%kind) .or. .not. action%damps)
+      acting = action%in_stage .and. (model%stages%has_inertia .or. .not. action%damps)
    end function acting_stages
 
    !> On which sides of the edges of a group a stage has ground. (edges)

@@ -3,7 +3,6 @@
 module boundary_warnings
    use acting_places, only: given_in
    use kinds, only: wp
-   use generalised_alpha, only: has_rates, has_inertia
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
    use model_types, only: model_t, acting_t, fix_t
@@ -140,7 +139,7 @@ contains
       real(wp) :: start, factor
       integer :: i, n, dynamic
 
-      dynamic = findloc(has_inertia(model%stages%kind), .true., dim=1)
+      dynamic = findloc(model%stages%has_inertia, .true., dim=1)
       do i = 1, size(model%actions)
          if (model%actions(i)%amplitude == 0) cycle
          associate (one => model%actions(i), h => model%amplitudes(model%actions(i)%amplitude))
@@ -199,7 +198,7 @@ contains
          class(acting_t), intent(in) :: one
          character(*), intent(in) :: what
 
-         if (any(one%in_stage .and. has_rates(model%stages%kind))) return
+         if (any(one%in_stage .and. model%stages%has_rates)) return
          call print_warning(place_of(one)//trim(what)//' has no effect: the stages in which it acts are static, '// &
                             'where pressures stay.')
       end subroutine look_at_stages

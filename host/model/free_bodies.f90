@@ -7,7 +7,6 @@ module free_bodies
    use contact_types, only: has_friction
    use exit_codes, only: EXIT_FREE_BODY
    use faults, only: fault_t, raise
-   use generalised_alpha, only: has_inertia
    use load_shapes, only: ties_of
    use model_types, only: model_t
    use scene_parts, only: PRESCRIBED_OF_BODY
@@ -42,7 +41,7 @@ contains
          allocate (model%on_contact(size(model%stages)))
          do s = 1, size(model%stages)
             model%on_contact(s)%words = ''
-            if (has_inertia(model%stages(s)%kind)) cycle
+            if (model%stages(s)%has_inertia) cycle
             associate (given => given_in(model, s))
                held = always .or. given([AT_U_R, AT_U_Z, PRESCRIBED_OF_BODY], :)
             end associate
