@@ -4,7 +4,7 @@
 module gmsh_reader
    use exit_codes, only: EXIT_MESH
    use kinds, only: wp
-   use triangle_mesh, only: mesh_t, add_group, NAME_LENGTH
+   use triangle_mesh, only: mesh_t, add_group, triangles_beside, NAME_LENGTH
    use faults, only: fault_t, raise, at_line
    use texts, only: short, whole, mark_length
    implicit none (type, external)
@@ -382,23 +382,17 @@ contains
       if (a(1)*b(2) - a(2)*b(1) < 0.0_wp) turned = nodes([1, 3, 2, 6, 5, 4])
    end function counter_clockwise
 
-   !> Turns edges so that their triangle lies on the left.
+   !> Turns edges so that their triangle lies on the left, of two the first one.
    subroutine orient(mesh, edges)
       type(mesh_t), intent(in) :: mesh
       integer, intent(inout) :: edges(:, :)
-      integer, allocatable :: forward(:)
-      integer :: e, k, side(3)
+      integer :: k
 
-      ! forward(m): first vertex of the triangle side with middle node m, counter-clockwise.
-      allocate (forward(size(mesh%x, 2)), source=0)
-      do e = 1, size(mesh%t6, 2)
-         do k = 1, 3
-            side = mesh%t6([k, mod(k, 3) + 1, k + 3], e)
-            if (forward(side(3)) == 0) forward(side(3)) = side(1)
+      associate (beside => triangles_beside(mesh%t6, edges))
+         do k = 1, size(edges, 2)
+            if (beside(2, k) > 0 .and. (beside(1, k) == 0 .or. beside(2, k) < beside(1, k))) &
+               edges(1:2, k) = edges([2, 1], k)
          end do
-      end do
-      do k = 1, size(edges, 2)
-         if (forward(edges(3, k)) == edges(2, k)) edges(1:2, k) = edges([2, 1], k)
-      end do
+      end associate
    end subroutine orient
 end module gmsh_reader

@@ -4,7 +4,7 @@ module triangle_mesh
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: mesh_t, group_of_t, NAME_LENGTH, find_group, add_group
+   public :: mesh_t, group_of_t, NAME_LENGTH, find_group, add_group, sides_of, triangles_beside
 
    integer, parameter :: NAME_LENGTH = 64
 
@@ -57,4 +57,32 @@ contains
       if (.not. allocated(mesh%groups)) allocate (mesh%groups(0))
       mesh%groups = [mesh%groups, group]
    end subroutine add_group
+
+   !> The three sides of every triangle, as edges that have it on their left. (3, 3 elements)
+   pure function sides_of(t6) result(sides)
+      integer, intent(in) :: t6(:, :)   !< (6, elements)
+      integer :: sides(3, 3*size(t6, 2))
+
+      sides = reshape(t6([1, 2, 4, 2, 3, 5, 3, 1, 6], :), shape(sides))
+   end function sides_of
+
+   !> Triangles on the left and on the right of edges, 0: there is none. An edge is known by its middle node. (2, edges)
+   pure function triangles_beside(t6, edges) result(beside)
+      integer, intent(in) :: t6(:, :), edges(:, :)   !< (6, elements), (3, edges)
+      integer :: beside(2, size(edges, 2))
+      integer, allocatable :: from(:), at_middle(:, :)
+      integer :: e, k
+
+      k = max(maxval(t6), maxval(edges))
+      allocate (from(k), at_middle(2, k), source=0)
+      from(edges(3, :)) = edges(1, :)
+      do e = 1, size(t6, 2)
+         do k = 1, 3
+            associate (middle => t6(k + 3, e))
+               if (from(middle) > 0) at_middle(merge(1, 2, from(middle) == t6(k, e)), middle) = e
+            end associate
+         end do
+      end do
+      beside = at_middle(:, edges(3, :))
+   end function triangles_beside
 end module triangle_mesh

@@ -5,17 +5,13 @@ module acting_places
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
    use kinds, only: wp
-   use generalised_alpha, only: has_inertia
    use model_types, only: model_t, action_t
-   use scene_parts, only: place_of
+   use scene_parts, only: place_of, PRESCRIBED_OF_BODY
    use texts, only: short, whole
-   use unknown_fields, only: DISPLACEMENTS
-   use triangle_mesh, only: group_of_t
+   use triangle_mesh, only: group_of_t, triangles_beside
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, nodes_of_ground, held_in, are_in, share_an_edge, check_actions, TURN
-
-   integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
+   public :: facing_edges, acting_stages, nodes_of_ground, given_in, are_in, share_an_edge, check_actions
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -55,43 +51,19 @@ contains
       type(action_t), intent(in) :: action
       logical :: acting(size(model%stages))
 
-      acting = action%in_stage .and. (has_inertia(model%stages%kind) .or. .not. action%damps)
+      acting = action%in_stage .and. (model%stages%has_inertia .or. .not. action%damps)
    end function acting_stages
 
    !> On which sides of the edges of a group a stage has ground. (edges)
    pure function sides_with_ground(model, group, number) result(sides)
       type(model_t), intent(in) :: model
       integer, intent(in) :: group, number   !< Of the mesh; of the stage.
-      integer :: sides(size(model%domain%mesh%groups(group)%edges, 2))
-      logical :: present(size(model%domain%region_of))
-      logical, dimension(size(model%domain%mesh%x, 2)) :: wanted, left, right
-      integer :: from(size(model%domain%mesh%x, 2))
-      integer :: e, k
+      integer :: sides(size(model%domain%mesh%groups(group)%edges, 2)), beside(2, size(sides))
+      logical :: present(0:size(model%domain%region_of))
 
-      present = ground_of(model, number)
-      wanted = .false.
-      left = .false.
-      right = .false.
-      associate (edges => model%domain%mesh%groups(group)%edges, t6 => model%domain%mesh%t6)
-         wanted(edges(3, :)) = .true.
-         do k = 1, size(sides)
-            from(edges(3, k)) = edges(1, k)
-         end do
-         ! A side of a triangle is known by the node in its middle; its triangle lies on the left.
-         do e = 1, size(t6, 2)
-            if (.not. present(e)) cycle
-            do k = 1, 3
-               associate (middle => t6(k + 3, e))
-                  if (.not. wanted(middle)) cycle
-                  if (from(middle) == t6(k, e)) left(middle) = .true.
-                  if (from(middle) /= t6(k, e)) right(middle) = .true.
-               end associate
-            end do
-         end do
-         sides = ON_NONE
-         where (left(edges(3, :))) sides = ON_LEFT
-         where (right(edges(3, :))) sides = sides + ON_RIGHT
-      end associate
+      present = [.false., ground_of(model, number)]
+      beside = triangles_beside(model%domain%mesh%t6, model%domain%mesh%groups(group)%edges)
+      sides = merge(ON_LEFT, ON_NONE, present(beside(1, :))) + merge(ON_RIGHT, ON_NONE, present(beside(2, :)))
    end function sides_with_ground
 
    !> Refuses what acts where it cannot: on nodes of no element, in a stage that lacks its ground, or along the normal
@@ -203,25 +175,28 @@ contains
       end associate
    end function share_an_edge
 
-   !> Motions of nodes that a &fix holds or moves in a stage, or from its start to its end. (TURN, nodes)
-   pure function held_in(model, number, throughout) result(held)
+   !> What a &fix gives nodes in a stage, or from its start to its end: a limit gives nothing throughout. Rotations of
+   !> bodies stand at PRESCRIBED_OF_BODY. (PRESCRIBED_OF_BODY, nodes)
+   pure function given_in(model, number, throughout) result(given)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number                !< Of the stage.
       logical, intent(in), optional :: throughout
-      logical :: held(TURN, size(model%domain%mesh%x, 2)), whole
+      logical :: given(PRESCRIBED_OF_BODY, size(model%domain%mesh%x, 2)), whole
       integer :: i
 
-      held = .false.
+      given = .false.
       whole = .false.
       if (present(throughout)) whole = throughout
       associate (stage => model%stages(number))
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i))
-               if (fix%field > DISPLACEMENTS .or. .not. fix%in_stage(number)) cycle
-               if (whole .and. (fix%from > stage%start .or. fix%until < stage%start + stage%duration)) cycle
-               held(merge(TURN, fix%field, fix%of_body), model%domain%mesh%groups(fix%group)%nodes) = .true.
+               if (.not. fix%in_stage(number)) cycle
+               if (whole .and. (fix%limits .or. fix%from > stage%start .or. &
+                                fix%until < stage%start + stage%duration)) cycle
+               given(merge(PRESCRIBED_OF_BODY, fix%field, fix%of_body), &
+                     model%domain%mesh%groups(fix%group)%nodes) = .true.
             end associate
          end do
       end associate
-   end function held_in
+   end function given_in
 end module acting_places

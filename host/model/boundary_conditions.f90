@@ -3,7 +3,7 @@
 !> the masses of plates.
 module boundary_conditions
    use kinds, only: wp
-   use generalised_alpha, only: scheme_t, make_scheme, has_rates
+   use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of
    use prescribed_values, only: constraint_t, begin_sides, is_released
    use scene_parts, only: PRESCRIBED_P_A
@@ -96,7 +96,7 @@ contains
             end associate
          end do
          call begin_sides(dofs, problem%state%x, constraint)
-         if (has_rates(problem%stage%kind)) return
+         if (problem%stage%has_rates) return
          do i = 1, dofs%n
             if (dofs%field(i) <= DISPLACEMENTS) cycle
             constraint%fixed(i) = .true.
@@ -137,7 +137,7 @@ contains
       type(scheme_t) :: scheme
       integer :: by(problem%model%dofs%n), air_by(size(problem%model%domain%mesh%x, 2)), i
 
-      scheme = make_scheme(problem%stage%kind, problem%stage%rho_inf, problem%stage%dt)
+      scheme = make_scheme(problem%stage, problem%stage%rho_inf, problem%stage%dt)
       call prescribing_fixes(problem, problem%state%time + scheme%dt, by, air_by)
       problem%constraint%acceleration = [(0.0_wp, i=1, size(by))]
       do i = 1, size(by)

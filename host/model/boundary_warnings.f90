@@ -1,8 +1,8 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings about supports, loads and histories of a scene that are allowed but usually mistakes.
 module boundary_warnings
+   use acting_places, only: given_in
    use kinds, only: wp
-   use generalised_alpha, only: has_rates, has_inertia
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
    use model_types, only: model_t, acting_t, fix_t
@@ -106,7 +106,7 @@ contains
    !> Inflows through edges with a prescribed pressure, which takes them up: they do nothing.
    subroutine look_at_inflows(model)
       type(model_t), intent(in) :: model
-      logical :: taken(size(model%domain%mesh%x, 2))
+      logical, allocatable :: given(:, :), taken(:)
       integer :: e, i, s, lost
       integer :: own   !< The pressure of the fluid: given itself, or by the other one and p_c.
 
@@ -116,8 +116,8 @@ contains
             own = merge(PRESCRIBED_P_A, AT_P_W, one%kind == LOAD_AIR)
             do s = 1, size(model%stages)
                if (.not. one%in_stage(s)) cycle
-               taken = has_given(model, s, own) .or. (has_given(model, s, AT_P_C) .and. &
-                                                      has_given(model, s, AT_P_W + PRESCRIBED_P_A - own))
+               given = given_in(model, s, throughout=.true.)
+               taken = given(own, :) .or. (given(AT_P_C, :) .and. given(AT_P_W + PRESCRIBED_P_A - own, :))
                lost = count([(all(taken(edges(:2, e))), e=1, size(edges, 2))])
                if (lost == 0) cycle
                call print_warning(place_of(one)//'the inflow has no effect on '//whole(lost)//' of the '// &
@@ -130,23 +130,6 @@ contains
       end do
    end subroutine look_at_inflows
 
-   !> Nodes with a prescribed value throughout a stage. (nodes)
-   pure function has_given(model, stage, field) result(has)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: stage, field   !< Number of the stage; as of fix_t.
-      logical :: has(size(model%domain%mesh%x, 2))
-      integer :: i
-
-      has = .false.
-      do i = 1, size(model%fixes)
-         associate (one => model%fixes(i))
-            if (one%field /= field .or. one%limits .or. .not. one%in_stage(stage)) cycle
-            if (one%from > -huge(1.0_wp) .or. one%until < huge(1.0_wp)) cycle
-            has(model%domain%mesh%groups(one%group)%nodes) = .true.
-         end associate
-      end do
-   end function has_given
-
    !> Histories of which a part lies before what they act on, and short pulses that are over before the first dynamic
    !> stage, though what follows them acts there: times are those of the run, not of the stage.
    subroutine look_at_histories(model)
@@ -156,7 +139,7 @@ contains
       real(wp) :: start, factor
       integer :: i, n, dynamic
 
-      dynamic = findloc(has_inertia(model%stages%kind), .true., dim=1)
+      dynamic = findloc(model%stages%has_inertia, .true., dim=1)
       do i = 1, size(model%actions)
          if (model%actions(i)%amplitude == 0) cycle
          associate (one => model%actions(i), h => model%amplitudes(model%actions(i)%amplitude))
@@ -215,7 +198,7 @@ contains
          class(acting_t), intent(in) :: one
          character(*), intent(in) :: what
 
-         if (any(one%in_stage .and. has_rates(model%stages%kind))) return
+         if (any(one%in_stage .and. model%stages%has_rates)) return
          call print_warning(place_of(one)//trim(what)//' has no effect: the stages in which it acts are static, '// &
                             'where pressures stay.')
       end subroutine look_at_stages

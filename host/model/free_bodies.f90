@@ -2,14 +2,14 @@
 !> Bodies that no support holds in a stage without inertia: what is connected by elements, ties and plates, and the
 !> rigid motions that its supports leave. docs/theory/host.md section 7.1.
 module free_bodies
-   use acting_places, only: held_in, TURN
+   use acting_places, only: given_in
    use kinds, only: wp
    use contact_types, only: has_friction
    use exit_codes, only: EXIT_FREE_BODY
    use faults, only: fault_t, raise
-   use generalised_alpha, only: has_inertia
    use load_shapes, only: ties_of
    use model_types, only: model_t
+   use scene_parts, only: PRESCRIBED_OF_BODY
    use texts, only: joined, short, whole
    use triangle_mesh, only: NAME_LENGTH
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z
@@ -17,6 +17,7 @@ module free_bodies
    private
    public :: check_bodies
 
+   integer, parameter :: TURN = 3   !< Motion beside AT_U_R and AT_U_Z: the rotation of plane strain.
    character(*), parameter :: MOTIONS(TURN) = [character(48) :: 'moving along r (x); add a &fix of u_r', &
       'moving along z (y); add a &fix of u_z', 'turning; add a &fix of u_z or u_r']
    character(*), parameter :: ALONG_PLATE = '; along a plate give one friction'
@@ -40,8 +41,10 @@ contains
          allocate (model%on_contact(size(model%stages)))
          do s = 1, size(model%stages)
             model%on_contact(s)%words = ''
-            if (has_inertia(model%stages(s)%kind)) cycle
-            held = always .or. held_in(model, s)
+            if (model%stages(s)%has_inertia) cycle
+            associate (given => given_in(model, s))
+               held = always .or. given([AT_U_R, AT_U_Z, PRESCRIBED_OF_BODY], :)
+            end associate
             touched = touched_in(model, s)
             do b = 1, size(body)
                if (body(b) /= b) cycle

@@ -41,7 +41,7 @@ contains
       type(saturation_t) :: sat
       character(600) :: text
       real(wp) :: p_c, pressures(2)
-      integer :: e, g, p, i, n
+      integer :: e, g, p
 
       allocate (tension%uses(size(model%domain%regions)))
       state = new_state_of(model%domain)
@@ -50,23 +50,8 @@ contains
          state%present = model%ground(:, 1)
          state%joins = spread(.false., 1, size(state%present))
       end if
-      do i = 1, size(model%initials)
-         associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
-            do n = 1, size(group%nodes)
-               state%v(AT_U_Z, group%nodes(n)) = one%v_z + one%wave*sin(one%wave_number &
-                                               *(model%domain%mesh%x(2, group%nodes(n)) - one%datum))
-            end do
-         end associate
-      end do
+      call set_nodes(model, state)
       ground = ground_at_start(model, [(is_present(state, e), e=1, size(model%domain%region_of))])
-      state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model)
-      call clear_dry_nodes(model, state%x)
-      ! Pressures live on the vertices alone where they are linear.
-      if (model%domain%n_p == 3) then
-         do e = 1, size(model%domain%mesh%t6, 2)
-            state%x(AT_P_W:AT_P_C, model%domain%mesh%t6(4:6, e)) = 0.0_wp
-         end do
-      end if
       do e = 1, size(model%domain%mesh%t6, 2)
          associate (region => model%domain%regions(model%domain%region_of(e)), one => ground%initials(ground%of(e)))
             do g = 1, model%domain%rule
@@ -106,6 +91,25 @@ contains
          end associate
       end do
    end subroutine initial_state
+
+   !> Velocities and pressures of the nodes.
+   subroutine set_nodes(model, state)
+      type(model_t), intent(in) :: model
+      type(model_state_t), intent(inout) :: state
+      integer :: i
+
+      associate (mesh => model%domain%mesh)
+         do i = 1, size(model%initials)
+            associate (one => model%initials(i), nodes => mesh%groups(model%initials(i)%group)%nodes)
+               state%v(AT_U_Z, nodes) = one%v_z + one%wave*sin(one%wave_number*(mesh%x(2, nodes) - one%datum))
+            end associate
+         end do
+         state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model)
+         call clear_dry_nodes(model, state%x)
+         ! Pressures live on the vertices alone where they are linear.
+         if (model%domain%n_p == 3) state%x(AT_P_W:AT_P_C, [mesh%t6(4:6, :)]) = 0.0_wp
+      end associate
+   end subroutine set_nodes
 
    pure subroutine note_use(law, e, p, use_of_law)
       class(material_t), intent(in) :: law

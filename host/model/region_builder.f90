@@ -32,9 +32,10 @@ module region_builder
    character(3), parameter :: FOREIGN_UNITS(2) = [character(3) :: 'Pa', 'MPa']
 contains
    !> &retention. The fault of its curve is told where a region asks for it.
-   subroutine build_retention(k, model)
+   subroutine build_retention(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
       type(curve_t) :: curve
 
       call k%text('name', curve%name, 'name, for the key of &region', REQUIRED)

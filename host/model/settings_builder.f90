@@ -76,9 +76,10 @@ contains
    end subroutine build_settings
 
    !> &fluids.
-   subroutine build_fluids(k, model)
+   subroutine build_fluids(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
+      type(fault_t), intent(inout) :: fault
 
       associate (f => model%domain%fluids)
          call k%number('k_w', f%k_w, TINY_, BIG, 'bulk modulus of water [kPa]', ':p_w :time')

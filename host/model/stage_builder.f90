@@ -5,7 +5,7 @@ module stage_builder
    use kinds, only: wp
    use convergence, only: measure_in
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
-   use generalised_alpha, only: has_inertia, is_flow
+   use generalised_alpha, only: analysis_t, STATIC, QUASI_STATIC, DYNAMIC, is_flow
    use history_shapes, only: pairs_of_shape, SHAPE_WORDS, TABLE
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
@@ -20,6 +20,7 @@ module stage_builder
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
    integer, parameter :: MANY = 1000000
+   type(analysis_t), parameter :: KINDS(3) = [STATIC, QUASI_STATIC, DYNAMIC]   !< In the order of the words.
    real(wp), parameter :: DEFAULT_TOLERANCE = 1.0e-3_wp  !< Of stages without dt in scenes that give none.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp          !< Newton's tolerance as a share of the steps'.
    real(wp), parameter :: NEWTON_LARGEST = 1.0e-4_wp     !< Its bound: the residuals of all steps add up.
@@ -93,10 +94,12 @@ contains
       type(stage_t) :: stage
       character(LENGTH) :: ends
       real(wp), allocatable :: lengths(:)
-      integer :: steps
+      integer :: steps, kind
 
       call k%text('name', stage%name, 'name of the stage', REQUIRED)
-      call k%word('analysis', stage%kind, 'static|quasi_static|dynamic', 'kind of the stage', REQUIRED)
+      kind = 0
+      call k%word('analysis', kind, 'static|quasi_static|dynamic', 'kind of the stage', REQUIRED)
+      if (kind > 0) stage%analysis_t = KINDS(kind)
       call k%number('duration', stage%duration, TINY_, BIG, 'duration [s]', REQUIRED)
       call k%number('dt', stage%dt, TINY_, BIG, 'time step [s]; where steps are controlled the first one')
       steps = 0
@@ -235,13 +238,13 @@ contains
       do i = 1, size(model%stages)
          associate (stage => model%stages(i))
             touching = any([(model%contacts(k)%in_stage(i), k=1, size(model%contacts))])
-            stage%measure = measure_in(stage%measure, has_inertia(stage%kind), touching)
+            stage%measure = measure_in(stage%measure, stage%has_inertia, touching)
             if (stage%rho_inf >= 0.0_wp) cycle
             stage%rho_inf = SMOOTH
-            if (has_inertia(stage%kind) .and. touching) stage%rho_inf = OPENING
+            if (stage%has_inertia .and. touching) stage%rho_inf = OPENING
             ! What the steps of a flow do not resolve, and forces that nothing balances at its start, are to go at once:
             ! with rho_inf they fade as rho_inf to the power of the steps.
-            if (is_flow(stage%kind)) stage%rho_inf = OPENING
+            if (is_flow(stage)) stage%rho_inf = OPENING
          end associate
       end do
    end subroutine choose_schemes

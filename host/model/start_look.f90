@@ -3,8 +3,7 @@
 !> displacements that are zeroed, plates, pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
-   use acting_places, only: nodes_of_ground, held_in
-   use generalised_alpha, only: has_rates, has_inertia
+   use acting_places, only: nodes_of_ground, given_in
    use boundary_conditions, only: SPACINGS
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
@@ -51,13 +50,13 @@ contains
       integer :: i
 
       if (.not. balance%matters) return
-      if (.not. has_rates(model%stages(1)%kind) .and. &
+      if (.not. model%stages(1)%has_rates .and. &
           .not. any(model%initials%geostatic .or. model%initials%uniform)) return
       share = ', where there is no stress'
       if (balance%there > 0.0_wp) share = ', '//short(100*balance%stress/balance%there)//' % of the stress there'
       why = ''
       i = findloc(model%actions%damps, .true., dim=1)
-      if (has_inertia(model%stages(1)%kind) .and. i > 0) why = ' The dashpots of '//trim(model%actions(i)%what)// &
+      if (model%stages(1)%has_inertia .and. i > 0) why = ' The dashpots of '//trim(model%actions(i)%what)// &
          ' hold no weight: find the balance in a static stage with a &fix that is limited to it.'
       call print_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
                        short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
@@ -118,9 +117,9 @@ contains
       i = findloc(model%actions%damps, .true., dim=1)
       if (i == 0 .or. .not. allocated(model%ground)) return
       do s = 2, size(model%stages)
-         if (.not. has_inertia(model%stages(s)%kind)) cycle
+         if (.not. model%stages(s)%has_inertia) cycle
          if (all(model%ground(:, s) .eqv. model%ground(:, s - 1))) cycle
-         associate (held => held_in(model, s))
+         associate (held => given_in(model, s))
             if (any(held(AT_U_Z, :) .and. nodes_of_ground(model, s))) cycle
          end associate
          call print_warning('Regions join or leave with the dynamic stage '//trim(model%stages(s)%name)//', where '// &
@@ -147,7 +146,7 @@ contains
          end associate
          held = model%domain%regions%with_w .and. model%domain%regions%drainage == DRAINED
          why = 'drained regions keep the pressures of the start'
-         if (.not. has_rates(model%stages(s)%kind)) then
+         if (.not. model%stages(s)%has_rates) then
             held = held .or. (model%domain%regions%with_w .and. model%domain%regions%drainage == COUPLED)
             why = 'a static stage keeps the pressures with which it begins'
          end if
@@ -171,8 +170,8 @@ contains
          associate (fix => model%fixes(i), edges => model%domain%mesh%groups(model%fixes(i)%group)%edges)
             if (fix%field /= AT_P_W .or. fix%hold) cycle
             do s = 1, size(model%stages)
-               if (.not. (fix%in_stage(s) .and. has_rates(model%stages(s)%kind))) cycle
-               held = held_in(model, s)
+               if (.not. (fix%in_stage(s) .and. model%stages(s)%has_rates)) cycle
+               held = given_in(model, s)
                pressed = nodes_under_pressure(model, s)
                bare = 0
                most = 0.0_wp
@@ -227,13 +226,13 @@ contains
       associate (h => model%amplitudes(fix%amplitude))
          do s = 1, size(model%stages)
             start = model%stages(s)%start
-            if (.not. (fix%in_stage(s) .and. has_inertia(model%stages(s)%kind))) cycle
+            if (.not. (fix%in_stage(s) .and. model%stages(s)%has_inertia)) cycle
             after = 0.0_wp
             i = count(h%times <= max(start, fix%from))
             if (i > 0) after = fix%value*slope_beside(h%times, h%values, h%arcs, i, 1)
             before = 0.0_wp
             if (s > 1 .and. fix%from <= start) then
-               if (has_inertia(model%stages(s - 1)%kind) .and. fix%in_stage(s - 1)) cycle
+               if (model%stages(s - 1)%has_inertia .and. fix%in_stage(s - 1)) cycle
             end if
             if (s == 1 .and. fix%field == AT_U_Z) then
                do i = 1, size(model%initials)

@@ -5,7 +5,6 @@ module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
    use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
-   use generalised_alpha, only: has_inertia
    use faults, only: fault_t
    use run_observer, only: observer_t, STAGE_BEGINS, STEP
    use run_state, only: run_t
@@ -77,21 +76,20 @@ contains
                call print_warning('contact '//trim(one%name)//' begins with surfaces that overlap by up to '// &
                   short(depth)//' m, near ('//short(place(1))//', '//short(place(2))//') m. The penalty presses '// &
                   'there with '//short(t%probe%pressure(at))//' kPa and stores '//short(t%probe%energy)//' kJ, '// &
-                  'which no load has done: '//advice(run%stage%kind, ROUNDING_DEPTH*shortest_edge(t%slave)))
+                  'which no load has done: '//advice(ROUNDING_DEPTH*shortest_edge(t%slave)))
             end associate
          end associate
       end do
    contains
       !> Without inertia surfaces that only touch hold nothing.
-      function advice(kind, least) result(text)
-         integer, intent(in) :: kind
+      function advice(least) result(text)
          real(wp), intent(in) :: least   !< Overlap that is not told [m].
          character(:), allocatable :: text
 
          text = 'a dynamic stage throws the surfaces apart. If that is not meant, move the plate or the mesh so '// &
                 'that they only touch, or find the prestress in a static stage before.'
-         if (.not. has_inertia(kind)) text = 'the stage finds the prestress. If none is meant, move the plate or '// &
-            'the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact '// &
+         if (.not. run%stage%has_inertia) text = 'the stage finds the prestress. If none is meant, move the plate '// &
+            'or the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact '// &
             'alone holds.'
       end function advice
    end subroutine warn_of_overlaps

@@ -5,7 +5,6 @@
 module cycles_alarm
    use archive, only: archive_t
    use faults, only: fault_t
-   use generalised_alpha, only: has_inertia
    use kinds, only: wp
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
    use run_observer, only: observer_t, BEGINS, STAGE_BEGINS, STEP
@@ -90,8 +89,8 @@ contains
       type(run_t), intent(in) :: run
       integer :: n
 
-      if (run%at%stage == 1 .or. .not. has_inertia(run%stage%kind)) return
-      if (has_inertia(run%model%stages(run%at%stage - 1)%kind)) return
+      if (run%at%stage == 1 .or. .not. run%stage%has_inertia) return
+      if (run%model%stages(run%at%stage - 1)%has_inertia) return
       n = size(run%model%amplitudes)
       self%origin = run%state%x(:DISPLACEMENTS, :)
       self%largest = 0.0_wp

@@ -10,7 +10,6 @@ module ledger_observer
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
    use faults, only: fault_t, raise
-   use generalised_alpha, only: has_inertia
    use kinds, only: wp
    use linear_system, only: T_CONTACT
    use run_observer, only: observer_t, FITS, BEGINS, STEP, TAKEN_OVER, STAGE_ENDS, ENDS
@@ -103,7 +102,7 @@ contains
          call book_creation(run, ledger)
          self%indicators = indicators_of(run, ledger%kinetic)
          run%news%contact_work = ledger%contact
-         if (.not. has_inertia(stage%kind)) return
+         if (.not. stage%has_inertia) return
          ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, &
                                 ledger%most_created > allowed_creation(stage%created_energy, ledger))
          if (ledger%overdue < merge(1.0_wp, PATIENCE, run%news%last)) return
@@ -163,7 +162,7 @@ contains
 
       associate (stage => run%stage, ledger => self%ledger)
          if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
-         if (.not. has_inertia(stage%kind) .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
+         if (.not. stage%has_inertia .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
          if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
          call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &
             '. Do not use its results: '//REMEDY//'.')

@@ -6,7 +6,6 @@
 module pressure_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use generalised_alpha, only: has_rates
    use material_point, only: lost_pressure, PRESSURE_LOST
    use faults, only: fault_t
    use porous_domain, only: is_present, COUPLED
@@ -63,7 +62,7 @@ contains
 
       associate (domain => run%domain, mesh => run%domain%mesh, x => run%next%x)
          ! Linear pressures are those of the corners alone.
-         if (told .or. .not. has_rates(run%stage%kind) .or. domain%n_p < 6) return
+         if (told .or. .not. run%stage%has_rates .or. domain%n_p < 6) return
          ! Pressures that are no unknowns of the ground do not count.
          counts = .false.
          do e = 1, size(mesh%t6, 2)

@@ -5,7 +5,6 @@ module start_report
    use, intrinsic :: iso_fortran_env, only: output_unit
    use contact_alarm, only: contact_alarm_t
    use faults, only: fault_t
-   use generalised_alpha, only: has_rates, has_inertia
    use start_findings, only: balance_t
    use run_cost, only: size_of_run
    use run_observer, only: observers_t, FITS, STAGE_BEGINS
@@ -53,8 +52,8 @@ contains
       if (verbose) write (output_unit, '(a)') size_of_run(run)
       do i = 1, size(run%model%stages)
          associate (stage => run%model%stages(i))
-            if (has_rates(stage%kind)) write (output_unit, '(a)') 'Stage '//trim(stage%name)//': '// &
-               trim(merge('dynamic     ', 'quasi_static', has_inertia(stage%kind)))//', rho_inf '// &
+            if (stage%has_rates) write (output_unit, '(a)') 'Stage '//trim(stage%name)//': '// &
+               trim(merge('dynamic     ', 'quasi_static', stage%has_inertia))//', rho_inf '// &
                short(stage%rho_inf)//'.'
             if (stage%controlled) write (output_unit, '(a)') 'Stage '//trim(stage%name)// &
                ': steps are controlled, tolerance '//short(stage%step_tolerance)//'.'

@@ -3,9 +3,8 @@
 !> docs/theory/host.md section 8.
 module start_balance
    use kinds, only: wp
-   use acting_places, only: held_in, TURN
+   use acting_places, only: given_in
    use boundary_conditions, only: force_of, plate_loads
-   use generalised_alpha, only: has_inertia
    use start_findings, only: balance_t
    use model_types, only: model_t, factor_at, value_at, load_t, unknowns_of
    use newton_step, only: unbalanced_forces
@@ -111,13 +110,13 @@ contains
    subroutine let_go_of_held(model, forces)
       type(model_t), intent(in) :: model
       real(wp), intent(inout) :: forces(:)   !< (unknowns) [kN]
-      logical :: held(TURN, size(model%domain%mesh%x, 2))
+      logical, allocatable :: held(:, :)
       integer :: i, f
 
-      held = held_in(model, 1)
+      allocate (held, source=given_in(model, 1))
       do i = 1, size(model%actions)
          associate (one => model%actions(i))
-            if (one%damps .and. one%in_stage(1) .and. has_inertia(model%stages(1)%kind)) &
+            if (one%damps .and. one%in_stage(1) .and. model%stages(1)%has_inertia) &
                held(:, model%domain%mesh%groups(one%group)%nodes) = .true.
          end associate
       end do

@@ -6,7 +6,6 @@ module step_attempt
    use faults, only: fault_t
    use boundary_conditions, only: constrain_step, complete_constraint, follow_accelerations, starting_accelerations, &
                                   load_at
-   use generalised_alpha, only: has_rates, has_inertia
    use model_types, only: gravity_at, share_over
    use newton_step, only: take_step, start_accelerations, unbalanced_forces, &
                           CONVERGED, MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED
@@ -43,7 +42,7 @@ contains
          call set_step(0.0_wp, run, fault)
          if (fault%code /= 0) return
          call begin_control(run)
-         if (has_inertia(stage%kind) .and. stage%solve_start) call first_accelerations(run, fault)
+         if (stage%has_inertia .and. stage%solve_start) call first_accelerations(run, fault)
       end associate
    end subroutine begin_stage
 
@@ -104,7 +103,7 @@ contains
             call explain_failure(run, dt, fault)
             return
          end if
-         if (.not. has_rates(run%stage%kind) .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) &
+         if (.not. run%stage%has_rates .and. at%step == 0 .and. at%cuts == CUTS_IN_VAIN) &
             call spread_sudden_loads(run)
          ! Nothing of the failed step is kept: the next attempt starts from run%state alone.
          at%factor = at%factor*share

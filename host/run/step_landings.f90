@@ -139,11 +139,8 @@ contains
       associate (time => run%next%time, dt => run%scheme%dt, stage => run%stage)
          do i = 1, size(run%model%amplitudes)
             associate (h => run%model%amplitudes(i))
-               if (.not. any(abs(h%times - time) < LAST_STEP*dt)) cycle
                ! Where two arcs of a wave meet nothing breaks.
-               if (size(h%arcs) > 0) then
-                  if (.not. any(abs(h%times - time) < LAST_STEP*dt .and. kinks_of(h%times, h%values, h%arcs))) cycle
-               end if
+               if (.not. any(abs(h%times - time) < LAST_STEP*dt .and. kinks_of(h%times, h%values, h%arcs))) cycle
                turn = amplitude_at(h, time + dt) - 2*amplitude_at(h, time) + amplitude_at(h, time - dt)
                is_break = is_break .or. abs(turn) > stage%step_tolerance*(maxval(h%values) - minval(h%values))
             end associate
@@ -159,8 +156,8 @@ contains
       real(wp) :: first
       integer :: i
 
-      associate (fixes => run%model%fixes)
-         changes = any((fixes%from > from .and. fixes%from < until) .or. (fixes%until > from .and. fixes%until < until))
+      associate (times => times_of_supports(run))
+         changes = any(times > from .and. times < until)
       end associate
       do i = 1, size(run%model%amplitudes)
          associate (h => run%model%amplitudes(i))

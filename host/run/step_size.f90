@@ -5,7 +5,7 @@
 module step_size
    use kinds, only: wp
    use error_norms, only: shift_rates, restore_rates, local_errors, remember
-   use generalised_alpha, only: make_scheme, has_rates, has_inertia, is_flow
+   use generalised_alpha, only: make_scheme, is_flow
    use run_state, only: run_t, reset_control, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
    use step_landings, only: next_time, end_of_given, is_break, begins_suddenly, changes_within, closed_contacts, &
                             ends_at_closing, end_where_it_closes, LAST_STEP, SHORTEST, LEAST_SPACINGS
@@ -51,7 +51,7 @@ contains
          c%controller = new_controller(first_step(run))
          c%start_up = START_UP_STEPS*c%controller%dt
          ! What moves already and meets something errs in the first step as in any later one.
-         if (has_inertia(run%stage%kind) .and. any(abs(run%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) c%start_up = 0.0_wp
+         if (run%stage%has_inertia .and. any(abs(run%state%v(:DISPLACEMENTS, :)) > 0.0_wp)) c%start_up = 0.0_wp
       end associate
    end subroutine begin_control
 
@@ -63,16 +63,16 @@ contains
       span = next_time(run, run%stage%duration) - run%state%time
       ! Nothing tells of the error of the first step of a flow: that of the scene may be shorter than what the tolerance
       ! asks for, or the whole stage, not between.
-      if (run%stage%dt > 0.0_wp .and. .not. (is_flow(run%stage%kind) .and. run%stage%dt < span)) then
+      if (run%stage%dt > 0.0_wp .and. .not. (is_flow(run%stage) .and. run%stage%dt < span)) then
          dt = min(run%stage%dt, run%stage%dt_max)
          return
       end if
-      if (.not. has_rates(run%stage%kind)) then
+      if (.not. run%stage%has_rates) then
          ! The answer of a material with a memory depends on the way there; nothing tells of the error of a single step.
          dt = span
          if (depends_on_path(run) .and. changes_within(run, run%state%time, run%state%time + run%stage%duration)) &
             dt = span*min(FIRST_STATIC, max(run%stage%step_tolerance, SHORTEST))
-      else if (is_flow(run%stage%kind)) then
+      else if (is_flow(run%stage)) then
          ! What a load leaves at once flows off with the root of time. Where nothing is sudden a step that short would
          ! drown what it changes in rounding.
          dt = span*min(FIRST_FLOW, max(merge(run%stage%step_tolerance**2, run%stage%step_tolerance, &
@@ -168,7 +168,7 @@ contains
       logical :: begins
 
       begins = run%at%step == 0 .or. (run%stage%controlled .and. run%control%fresh == 0)
-      run%scheme = make_scheme(run%stage%kind, run%stage%rho_inf, dt, is_flow(run%stage%kind) .and. begins)
+      run%scheme = make_scheme(run%stage, run%stage%rho_inf, dt, is_flow(run%stage) .and. begins)
       if (run%stage%controlled) call shift_rates(run%scheme, run%control%memory, run%state)
    end subroutine begin_attempt
 
@@ -185,7 +185,7 @@ contains
          c%error = 0.0_wp
          if (run%stage%controlled) then
             touching = c%touching
-            if (has_inertia(run%stage%kind)) touching = closed_contacts(run, run%next%x)
+            if (run%stage%has_inertia) touching = closed_contacts(run, run%next%x)
             closes = any(touching > c%touching)
             if (closes) accepted = ends_at_closing(run)
             if (.not. accepted) return
@@ -209,14 +209,14 @@ contains
       logical, intent(out) :: known(FIELDS)
 
       associate (c => run%control)
-         if (.not. has_rates(run%stage%kind) .and. .not. depends_on_path(run)) then
+         if (.not. run%stage%has_rates .and. .not. depends_on_path(run)) then
             ! Without a memory and without a flow the answer does not depend on the steps.
             error = 0.0_wp
             known = .true.
             return
          end if
          call local_errors(run%scheme, c%memory, run%state, run%next, error, known)
-         if (is_flow(run%stage%kind) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(run)
+         if (is_flow(run%stage) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(run)
          ! Saturated soil holds no air and has no suction: its number follows no balance that holds it, and rings.
          where (run%state%x(AT_P_C, :) < 0.0_wp .and. run%next%x(AT_P_C, :) < 0.0_wp) error(AT_P_C, :) = 0.0_wp
       end associate
@@ -341,7 +341,7 @@ contains
       run%control%controller%held = .true.
       call restore_rates(run%control%memory, run%state)
       ! The rate of a static step before holds still; a flow may have failed where something begins.
-      if (has_rates(run%stage%kind)) run%control%memory%known = .false.
+      if (run%stage%has_rates) run%control%memory%known = .false.
       run%at%factor = 1.0_wp
       run%at%nominal = run%control%controller%dt
    end subroutine shorten_step
@@ -353,12 +353,12 @@ contains
       logical :: breaks
 
       if (.not. run%stage%controlled) return
-      breaks = .not. has_inertia(run%stage%kind) .and. is_break(run)
+      breaks = .not. run%stage%has_inertia .and. is_break(run)
       associate (c => run%control, dt => run%scheme%dt, stage => run%stage)
          call remember(run%scheme, c%memory, run%state, run%next)
          c%fresh = c%fresh + 1
          ! A first static step may have taken at once what acts from the start: its rate is none.
-         if (c%fresh < merge(2, SETTLED, .not. has_rates(stage%kind))) c%memory%known = .false.
+         if (c%fresh < merge(2, SETTLED, .not. stage%has_rates)) c%memory%known = .false.
          run%at%cuts = max(0, run%at%cuts - 1)
          if (breaks) then
             call sudden(run%next%time, run)

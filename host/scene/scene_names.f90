@@ -5,6 +5,7 @@ module scene_names
    use scene_parts, only: NAME_LENGTH
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
+   use key_schema, only: given
    use material_registry, only: is_law
    use namelists, only: group_t, find_entry
    use texts, only: whole, LENGTH
@@ -12,10 +13,7 @@ module scene_names
    private
    public :: check_names
 
-   !> Groups with names; those of one list share them.
-   character(12), parameter :: NAMED(7) = [character(12) :: 'retention', 'permeability', 'history', 'stage', 'point', &
-      'plate', 'contact']
-   integer, parameter :: OF_MATERIALS = size(NAMED) + 1   !< All laws share one list.
+   !> Groups whose names become files or columns.
    character(12), parameter :: WRITTEN(4) = [character(12) :: 'stage', 'point', 'plate', 'contact']
    character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
    character(*), parameter :: FIT = LETTERS//'0123456789_-.'
@@ -27,17 +25,19 @@ contains
       type(fault_t), intent(inout) :: fault
       character(:), allocatable :: place
       character(LENGTH) :: names(size(groups))
-      integer :: lists(size(groups)), g, i, k
+      character(12) :: kinds(size(groups))   !< Groups of one kind have no name in common.
+      integer :: g, i, k
 
       names = ''
       do g = 1, size(groups)
-         lists(g) = list_of(groups(g))
-         if (lists(g) == 0) cycle
+         kinds(g) = groups(g)%name(:12)
+         if (is_law(groups(g)%name)) kinds(g) = 'material'
+         if (groups(g)%name == 'scene' .or. .not. given(groups(g), 'name')) cycle
          associate (item => groups(g)%entries(find_entry(groups(g), 'name')))
             names(g) = item%values(1)
             place = at_line(groups(g)%file, item%line)//'name = '''//trim(names(g))//''''
          end associate
-         i = findloc(lists(:g - 1) == lists(g) .and. names(:g - 1) == names(g), .true., dim=1)
+         i = findloc(kinds(:g - 1) == kinds(g) .and. names(:g - 1) == names(g), .true., dim=1)
          if (names(g) == '' .or. len_trim(names(g)) > NAME_LENGTH) then
             call raise(fault, EXIT_INPUT, place//': a name has 1 to '//whole(NAME_LENGTH)//' characters.')
          else if (any(WRITTEN == groups(g)%name) .and. verify(trim(names(g)), FIT) > 0) then
@@ -60,12 +60,4 @@ contains
          end associate
       end do
    end subroutine check_names
-
-   !> Number of the list that a group's name belongs to, 0 if it has none.
-   integer function list_of(group) result(number)
-      type(group_t), intent(in) :: group
-
-      number = findloc(NAMED, group%name, dim=1)
-      if (is_law(group%name)) number = OF_MATERIALS
-   end function list_of
 end module scene_names

@@ -5,6 +5,7 @@ module scene_parts
    use kinds, only: wp
    use convergence, only: BY_STAGE
    use faults, only: at_line
+   use generalised_alpha, only: analysis_t
    use history_shapes, only: arc_at
    use texts, only: LENGTH, PATH_LENGTH
    use unknown_fields, only: FIELDS, FIELD_NAMES
@@ -54,9 +55,8 @@ module scene_parts
       character(LENGTH), allocatable :: stages(:)    !< From whose starts the times count; none: that of the run.
    end type amplitude_t
 
-   type :: stage_t
+   type, extends(analysis_t) :: stage_t
       character(NAME_LENGTH) :: name = ''
-      integer :: kind = 0                            !< Of generalised_alpha.
       real(wp) :: start = 0.0_wp                     !< When the stages before it end [s].
       real(wp) :: duration = 0.0_wp, dt = 0.0_wp, dt_growth = 1.0_wp, dt_max = NEVER
       logical :: controlled = .false.                !< Steps are chosen from their error.

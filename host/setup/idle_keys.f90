@@ -2,7 +2,6 @@
 !> Keys of a scene that change nothing because another key says so, and definitions that nobody uses.
 module idle_keys
    use faults, only: at_line
-   use generalised_alpha, only: has_rates, has_inertia, DYNAMIC
    use kinds, only: wp
    use key_schema, only: key_t, idle_reason, get_text, given, line_of, place_of
    use material_registry, only: is_law
@@ -55,11 +54,11 @@ contains
       why = idle_reason(keys, key, group)
       if (why /= '') then
          ! Its own group says why.
-      else if (index(key%acts, ':time') > 0 .and. .not. any(has_rates(model%stages%kind))) then
+      else if (index(key%acts, ':time') > 0 .and. .not. any(model%stages%has_rates)) then
          why = ': every stage is static and has no time; analysis = ''quasi_static'' of &stage has'
-      else if (index(key%acts, ':dynamic') > 0 .and. .not. any(model%stages%kind == DYNAMIC)) then
+      else if (index(key%acts, ':dynamic') > 0 .and. .not. any(model%stages%has_inertia)) then
          why = ': no stage is dynamic'
-      else if (index(key%acts, ':moving') > 0 .and. .not. has_inertia(model%stages(1)%kind)) then
+      else if (index(key%acts, ':moving') > 0 .and. .not. model%stages(1)%has_inertia) then
          why = ': the run begins with stage '//trim(model%stages(1)%name)//', which has no inertia and leaves it '// &
                'at rest; begin with a dynamic stage, and give the stress of the start by stress of &initial'
       else if (index(key%acts, ':gravity') > 0 .and. .not. model%domain%gravity > 0.0_wp) then

@@ -15,71 +15,103 @@ module scene_keys
    use settings_builder, only: build_settings, build_fluids, build_point
    use stage_builder, only: build_history, build_stage
    use term_registry, only: with_own_groups, declare_keys
+   use texts, only: LENGTH
    implicit none (type, external)
    private
-   public :: build_group, check_keys, keys_of_scenes, print_template
+   public :: build_group, check_keys, check_counts, keys_of_scenes, print_template
 
-   character(12), parameter :: GROUPS(*) = [character(12) :: 'scene', 'mesh', 'fluids', 'retention', 'permeability', &
-      'region', 'initial', 'history', 'stage', 'fix', 'load', 'tie', 'plate', 'contact', 'point']
+   abstract interface
+      !> Declares the keys of a group, and builds its part of a model unless the table only lists.
+      subroutine build_i(k, model, fault)
+         import :: key_table_t, model_t, fault_t
+         type(key_table_t), intent(inout) :: k
+         type(model_t), intent(inout) :: model
+         type(fault_t), intent(inout) :: fault
+      end subroutine build_i
+   end interface
+
+   type :: builder_t
+      character(12) :: group
+      procedure(build_i), pointer, nopass :: build => null()
+      logical :: once = .false.     !< A scene has no two.
+      logical :: needed = .false.   !< Without it there is nothing to do.
+   end type builder_t
 contains
+   !> All of them but those of terms, in the order of the template.
+   subroutine list_builders(list)
+      type(builder_t), allocatable, intent(out) :: list(:)
+
+      allocate (list(0))
+      call add('scene', build_settings, once=.true., needed=.true.)
+      call add('mesh', build_mesh, once=.true., needed=.true.)
+      call add('fluids', build_fluids, once=.true.)
+      call add('retention', build_retention)
+      call add('permeability', build_permeability)
+      call add('region', build_region, needed=.true.)
+      call add('initial', build_initial)
+      call add('history', build_history)
+      call add('stage', build_stage, needed=.true.)
+      call add('fix', build_fix)
+      call add('load', build_load)
+      call add('tie', build_tie)
+      call add('plate', build_plate)
+      call add('contact', build_contact)
+      call add('point', build_point)
+   contains
+      subroutine add(group, build, once, needed)
+         character(*), intent(in) :: group
+         procedure(build_i) :: build
+         logical, intent(in), optional :: once, needed
+         type(builder_t) :: one
+
+         one%group = group
+         one%build => build
+         if (present(once)) one%once = once
+         if (present(needed)) one%needed = needed
+         list = [list, one]
+      end subroutine add
+   end subroutine list_builders
+
    !> Builds the part of a model that the group of a table says, or lists its keys. Faults: those of its builder. Groups
    !> of terms are built by these.
    subroutine build_group(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
       type(fault_t), intent(inout) :: fault
+      type(builder_t), allocatable :: list(:)
+      integer :: i
 
-      select case (k%group%name)
-      case ('scene')
-         call build_settings(k, model, fault)
-      case ('mesh')
-         call build_mesh(k, model, fault)
-      case ('fluids')
-         call build_fluids(k, model)
-      case ('retention')
-         call build_retention(k, model)
-      case ('permeability')
-         call build_permeability(k, model, fault)
-      case ('region')
-         call build_region(k, model, fault)
-      case ('initial')
-         call build_initial(k, model, fault)
-      case ('history')
-         call build_history(k, model, fault)
-      case ('stage')
-         call build_stage(k, model, fault)
-      case ('fix')
-         call build_fix(k, model, fault)
-      case ('load')
-         call build_load(k, model, fault)
-      case ('tie')
-         call build_tie(k, model, fault)
-      case ('plate')
-         call build_plate(k, model, fault)
-      case ('contact')
-         call build_contact(k, model, fault)
-      case ('point')
-         call build_point(k, model, fault)
-      end select
+      call list_builders(list)
+      i = findloc(list%group, k%group%name, dim=1)
+      if (i > 0) call list(i)%build(k, model, fault)
    end subroutine build_group
 
-   !> The keys of all groups but those of laws of materials, in the order of the template.
+   !> The keys of all groups in the order of the template, of laws of materials the one that is none of their own.
    function keys_of_scenes() result(keys)
       type(key_t), allocatable :: keys(:)
       type(key_table_t) :: table
+      type(builder_t), allocatable :: list(:)
       type(model_t) :: nothing
       type(fault_t) :: fault
-      character(12), allocatable :: names(:)
+      character(12), allocatable :: names(:), laws(:)
+      character(LENGTH) :: name
       integer :: g
 
-      allocate (names, source=with_own_groups(GROUPS))
+      call list_builders(list)
+      allocate (names, source=with_own_groups(list%group))
+      allocate (laws, source=law_names())
       table = listing('')
+      name = ''
       do g = 1, size(names)
          table%group%name = names(g)
          ! What a group lacks is no fault of a list.
          fault = fault_t()
          call build_group(table, nothing, fault)
          call declare_keys(table, nothing, fault)
+      end do
+      do g = 1, size(laws)
+         table%group%name = laws(g)
+         call table%text('name', name, 'name, for the key material of &region', REQUIRED)
       end do
       call move_alloc(table%keys, keys)
    end function keys_of_scenes
@@ -92,7 +124,7 @@ contains
       type(key_t), allocatable :: keys(:)
       integer :: g
 
-      allocate (keys, source=[keys_of_scenes(), names_of_laws()])
+      allocate (keys, source=keys_of_scenes())
       do g = 1, size(groups)
          if (groups(g)%name == 'scene') call refuse_old_keys(groups(g), fault)
          if (fault%code == 0) call check_group(keys, groups(g), is_law(groups(g)%name), fault)
@@ -100,45 +132,41 @@ contains
       end do
    end subroutine check_keys
 
-   !> The key of laws of materials that is none of their own.
-   function names_of_laws() result(keys)
-      type(key_t), allocatable :: keys(:)
-      character(12), allocatable :: laws(:)
-      integer :: g
-
-      allocate (laws, source=law_names())
-      keys = [(key_t(laws(g), 'name', 't', REQUIRED, 0, 0, 'name, for the key material of &region'), g=1, size(laws))]
-   end function names_of_laws
-
-   !> Fault EXIT_INPUT: a key that older scenes have, with what says it today.
+   !> Fault EXIT_INPUT: a key of other programs or of older scenes, to which the nearest name would mislead.
    subroutine refuse_old_keys(group, fault)
       type(group_t), intent(in) :: group   !< &scene.
       type(fault_t), intent(inout) :: fault
-      character(*), parameter :: OLD(8) = [character(20) :: 'accuracy', 'mesh', 'budget', 'ordering', 'effects', &
-         'effects_tolerance', 'effects_pilot_share', 'effects_on_warning']
-      character(*), parameter :: MEASURES = ' --accuracy A" measures the errors of the answers, and refines steps '// &
-         'and mesh until they are below A.'
-      character(:), allocatable :: text
-      integer :: i
 
-      text = ''
-      do i = 1, size(OLD)
-         if (.not. given(group, trim(OLD(i))) .or. fault%code /= 0) cycle
-         if (i == 1) then
-            text = 'the local tolerance of the steps is now step_tolerance; "mud_study accuracy '//trim(group%file)// &
-                   MEASURES
-         else if (i <= 3) then
-            text = 'leave it out; "mud_study accuracy '//trim(group%file)//MEASURES
-         else if (i == 4) then
-            text = 'leave it out; the equations are ordered by AMD, beyond 10,000 unknowns by METIS.'
-         else
-            text = 'leave it out, and give analysis, fields and gravity; "mud_study effects '//trim(group%file)// &
-                   '" measures what each effect changes and writes the scene without those that do not matter.'
-         end if
-         call raise(fault, EXIT_INPUT, at_line(group%file, line_of(group, trim(OLD(i))))//trim(OLD(i))// &
-                    ' is no key of &scene any more: '//text)
-      end do
+      call refuse('accuracy', 'the local tolerance of the steps is now step_tolerance; "mud_study accuracy '// &
+                  trim(group%file)//' --accuracy A" measures the errors of the answers, and refines steps and mesh '// &
+                  'until they are below A.')
+      call refuse('ordering', 'leave it out; the equations are ordered by AMD, beyond 10,000 unknowns by METIS.')
+   contains
+      subroutine refuse(key, instead)
+         character(*), intent(in) :: key, instead
+
+         if (given(group, key) .and. fault%code == 0) call raise(fault, EXIT_INPUT, &
+            at_line(group%file, line_of(group, key))//key//' is no key of &scene any more: '//instead)
+      end subroutine refuse
    end subroutine refuse_old_keys
+
+   !> Groups that occur once, and those without which there is nothing to do. Fault EXIT_INPUT.
+   subroutine check_counts(file, groups, fault)
+      character(*), intent(in) :: file
+      type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
+      type(fault_t), intent(inout) :: fault
+      type(builder_t), allocatable :: list(:)
+      integer :: i, n
+
+      call list_builders(list)
+      do i = 1, size(list)
+         n = count(groups%name == list(i)%group)
+         if (list(i)%once .and. n > 1) call raise(fault, EXIT_INPUT, trim(file)//': &'//trim(list(i)%group)// &
+                                                  ' is given more than once; keep one.')
+         if (list(i)%needed .and. n == 0) call raise(fault, EXIT_INPUT, trim(file)//': the group &'// &
+            trim(list(i)%group)//' is missing; mud_host --template prints every group.')
+      end do
+   end subroutine check_counts
 
    !> Every key with its default and meaning, as a scene to start from.
    subroutine print_template(unit)
@@ -147,7 +175,7 @@ contains
       character(12), allocatable :: laws(:)
       integer :: g, k
 
-      allocate (all_keys, source=[keys_of_scenes(), names_of_laws()])
+      allocate (all_keys, source=keys_of_scenes())
       allocate (laws, source=law_names())
       do g = 1, size(laws)
          all_keys = [all_keys, law_keys(laws(g), laws(g))]

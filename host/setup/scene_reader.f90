@@ -1,10 +1,10 @@
 ! SPDX-License-Identifier: MIT
 !> Reads a scene: groups in any order, every key checked against the list of keys, before a model is built of them.
 module scene_reader
-   use faults, only: fault_t, raise, EXIT_INPUT
+   use faults, only: fault_t
    use namelists, only: group_t, read_groups
    use scene_fingerprint, only: origin_of
-   use scene_keys, only: check_keys
+   use scene_keys, only: check_keys, check_counts
    use effect_switches, only: remove_effects
    use scene_names, only: check_names
    use scene_settings, only: apply_settings
@@ -32,23 +32,4 @@ contains
       call move_alloc(groups, scene%as_read)
       call remove_effects(scene, fault)
    end subroutine read_scene
-
-   !> Groups that occur once, and those without which there is nothing to do.
-   subroutine check_counts(file, groups, fault)
-      character(*), intent(in) :: file
-      type(group_t), intent(in) :: groups(:)
-      type(fault_t), intent(inout) :: fault
-      character(6), parameter :: ONCE(3) = ['scene ', 'mesh  ', 'fluids'], NEEDED(4) = ['scene ', 'mesh  ', 'region', &
-                                                                                        'stage ']
-      integer :: k
-
-      do k = 1, size(ONCE)
-         if (count(groups%name == ONCE(k)) > 1) call raise(fault, EXIT_INPUT, trim(file)// &
-            ': &'//trim(ONCE(k))//' is given more than once; keep one.')
-      end do
-      do k = 1, size(NEEDED)
-         if (.not. any(groups%name == NEEDED(k))) call raise(fault, EXIT_INPUT, trim(file)// &
-            ': the group &'//trim(NEEDED(k))//' is missing; mud_host --template prints every group.')
-      end do
-   end subroutine check_counts
 end module scene_reader

@@ -17,7 +17,7 @@ module scene_warnings
    use start_look, only: warn_of_start
    use stress_units, only: KILOPASCAL
    use texts, only: short, whole
-   use triangle_mesh, only: mesh_t
+   use triangle_mesh, only: mesh_t, sides_of, triangles_beside
    implicit none (type, external)
    private
    public :: warn_of_scene
@@ -216,11 +216,17 @@ contains
    !> Warns of boundary nodes at one place that no contact, tie or plate joins.
    subroutine look_at_slits(model)
       type(model_t), intent(in) :: model
+      integer :: sides(3, 3*size(model%domain%mesh%t6, 2))
+      logical :: outside(size(model%domain%mesh%x, 2))
       integer, allocatable :: outer(:)
       real(wp) :: near
       integer :: i, k, pairs, first
 
-      outer = pack([(i, i=1, size(model%domain%mesh%x, 2))], are_outside(model))
+      ! Nodes on sides that one triangle alone has.
+      sides = sides_of(model%domain%mesh%t6)
+      outside = .false.
+      outside(pack(sides, spread(any(triangles_beside(model%domain%mesh%t6, sides) == 0, dim=1), 1, 3))) = .true.
+      outer = pack([(i, i=1, size(outside))], outside)
       pairs = 0
       first = 0
       associate (x => model%domain%mesh%x)
@@ -240,26 +246,6 @@ contains
             '&contact or &tie between the two sides.')
       end associate
    end subroutine look_at_slits
-
-   !> Nodes on sides that one triangle alone has. (nodes)
-   pure function are_outside(model) result(outside)
-      type(model_t), intent(in) :: model
-      logical :: outside(size(model%domain%mesh%x, 2))
-      integer :: users(size(outside)), e, k
-
-      users = 0
-      outside = .false.
-      associate (t6 => model%domain%mesh%t6)
-         do e = 1, size(t6, 2)
-            users(t6(4:6, e)) = users(t6(4:6, e)) + 1
-         end do
-         do e = 1, size(t6, 2)
-            do k = 1, 3
-               if (users(t6(k + 3, e)) == 1) outside(t6([k, mod(k, 3) + 1, k + 3], e)) = .true.
-            end do
-         end do
-      end associate
-   end function are_outside
 
    pure logical function are_joined(model, a, b)
       type(model_t), intent(in) :: model

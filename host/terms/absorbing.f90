@@ -5,7 +5,7 @@
 !> the boundary where it begins to act, undrained. The forces that it held before stay, so that only what departs from
 !> that state leaves as a wave. docs/theory/host.md section 7.4.
 module absorbing
-   use acting_places, only: facing_edges, acting_stages, are_in, held_in, share_an_edge, TURN
+   use acting_places, only: facing_edges, acting_stages, are_in, given_in, share_an_edge
    use archive, only: archive_t
    use boundary_conditions, only: prescribing_fixes
    use equation_assembly, only: assemble
@@ -26,6 +26,7 @@ module absorbing
    use scene_types, only: item_of
    use springs, only: linear_forces_t
    use texts, only: short, whole, LENGTH
+   use triangle_mesh, only: triangles_beside
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use warnings, only: print_warning
    implicit none (type, external)
@@ -42,6 +43,7 @@ module absorbing
       logical :: repeats = .false.               !< An earlier one has its dashpots: it brings another wave alone.
       integer :: dashpots = 0                    !< Place of its dashpots in the constraint.
       integer, allocatable :: edges(:, :)        !< (3, edges) Nodes.
+      integer, allocatable :: elements(:)        !< (edges) Those on their left: what lies right may be no ground.
       !> Of the ground behind the edges, 0 before the boundary has acted: impedances rho c_p, rho c_s [kPa s/m], outflow
       !> of water and air over the rate of the pressure, k/(eta c_p) [m/kPa]. (4, edges)
       real(wp), allocatable :: behind(:, :)
@@ -139,7 +141,7 @@ contains
    subroutine look_at_supports(model, side)
       type(model_t), intent(in) :: model
       type(side_t), intent(in) :: side
-      logical :: held(TURN, size(model%domain%mesh%x, 2))
+      logical, allocatable :: held(:, :)
       character(*), parameter :: WORDS(DISPLACEMENTS) = ['u_r', 'u_z']
       real(wp) :: extent(DISPLACEMENTS)
       integer :: s, f
@@ -149,7 +151,7 @@ contains
          extent = [(maxval(x(f, nodes)) - minval(x(f, nodes)), f=1, DISPLACEMENTS)]
          do s = 1, size(model%stages)
             if (.not. acts(side, model, s)) cycle
-            held = held_in(model, s, throughout=.true.)
+            held = given_in(model, s, throughout=.true.)
             do f = 1, DISPLACEMENTS
                ! Ground that is held throughout has no motion along this axis.
                if (.not. all(held(f, nodes)) .or. all(held(f, reshape(t6, [size(t6)])))) cycle
@@ -179,6 +181,9 @@ contains
             problem%constraint%linear = [problem%constraint%linear, none]
             side%dashpots = size(problem%constraint%linear)
             side%edges = facing_edges(problem%model, side%group, acting_stages(problem%model, side%action_t))
+            associate (beside => triangles_beside(problem%domain%mesh%t6, side%edges))
+               side%elements = beside(1, :)
+            end associate
             allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
             allocate (side%held(problem%dofs%n), source=.false.)
             allocate (side%incoming(problem%dofs%n), side%carried(problem%dofs%n), source=0.0_wp)
@@ -213,10 +218,10 @@ contains
 
    !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points. Fault
    !> EXIT_MATERIAL: the ground has no stiffness, or its material refuses its own state.
-   subroutine ground_behind(problem, side, edge, ground, fault)
+   subroutine ground_behind(problem, side, e, ground, fault)
       type(problem_t), intent(in), target :: problem
       type(side_t), intent(in) :: side
-      integer, intent(in) :: edge(3)
+      integer, intent(in) :: e   !< The element.
       real(wp), intent(out) :: ground(4)
       type(fault_t), intent(inout) :: fault
       class(material_t), pointer :: law
@@ -226,10 +231,9 @@ contains
       real(wp), dimension(problem%domain%rule) :: suction, s, n
       real(wp) :: strain(6, problem%domain%rule), p(2), rho, c_p, c_s, modulus, shear, slope
       real(wp), allocatable :: before(:, :), after(:, :)
-      integer :: e, g, first, last
+      integer :: g, first, last
 
       ground = 0.0_wp
-      e = element_behind(problem%domain, edge)
       associate (m => problem%domain, state => problem%state, region => &
                  problem%domain%regions(problem%domain%region_of(e)))
          first = (e - 1)*m%rule + 1
@@ -435,7 +439,7 @@ contains
             if (.not. begin_to_act(i)) cycle
             associate (side => self%sides(i))
                do e = 1, size(side%edges, 2)
-                  call ground_behind(problem, side, side%edges(:, e), side%behind(:, e), fault)
+                  call ground_behind(problem, side, side%elements(e), side%behind(:, e), fault)
                   if (fault%code /= 0) return
                end do
                call make_dashpots(problem%model, side, problem%constraint%linear(side%dashpots))
@@ -523,7 +527,7 @@ contains
       force = 0.0_wp
       associate (m => problem%domain, state => problem%state)
          do k = 1, size(side%edges, 2)
-            e = element_behind(m, side%edges(:, k))
+            e = side%elements(k)
             stress = 0.0_wp
             do g = 1, m%rule
                p = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
@@ -548,17 +552,6 @@ contains
          end do
       end associate
    end function tractions
-
-   !> The triangle on the left of an edge: of two that share it the other may be no ground.
-   pure integer function element_behind(domain, edge) result(e)
-      type(domain_t), intent(in) :: domain
-      integer, intent(in) :: edge(3)
-      integer :: i
-
-      associate (t6 => domain%mesh%t6)
-         e = findloc([(any(t6(4:6, i) == edge(3) .and. t6(1:3, i) == edge(1)), i=1, size(t6, 2))], .true., dim=1)
-      end associate
-   end function element_behind
 
    subroutine exchange(self, problem, archive)
       class(absorbing_t), intent(inout) :: self

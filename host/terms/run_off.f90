@@ -5,7 +5,6 @@ module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts, force_of
    use faults, only: fault_t, raise, EXIT_INPUT
-   use generalised_alpha, only: has_rates
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t, factor_at, factors_of, gravity_at, value_at, load_t
    use prescribed_values, only: is_released
@@ -128,7 +127,7 @@ contains
       type(problem_t), intent(inout) :: problem
       integer :: i, k
 
-      if (.not. has_rates(problem%stage%kind)) return
+      if (.not. problem%stage%has_rates) return
       associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%at%stage)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i), nodes => groups(model%fixes(i)%group)%nodes)

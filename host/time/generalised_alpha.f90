@@ -7,16 +7,19 @@ module generalised_alpha
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: scheme_t, make_scheme, predict, advance_rates, rate_of
-   public :: STATIC, QUASI_STATIC, DYNAMIC, has_rates, has_inertia, is_flow
+   public :: analysis_t, scheme_t, make_scheme, predict, advance_rates, rate_of
+   public :: STATIC, QUASI_STATIC, DYNAMIC, is_flow
 
-   integer, parameter :: STATIC = 1         !< Equilibrium alone: no rates, pressures held.
-   integer, parameter :: QUASI_STATIC = 2   !< Flow and equilibrium: no accelerations.
-   integer, parameter :: DYNAMIC = 3        !< Flow and equilibrium with accelerations.
-
-   type :: scheme_t
+   type :: analysis_t
       logical :: has_rates = .false.               !< There are first-order rates, and so flow.
       logical :: has_inertia = .false.             !< There are accelerations.
+   end type analysis_t
+
+   type(analysis_t), parameter :: STATIC = analysis_t(.false., .false.)       !< Equilibrium alone, pressures held.
+   type(analysis_t), parameter :: QUASI_STATIC = analysis_t(.true., .false.)  !< Flow and equilibrium.
+   type(analysis_t), parameter :: DYNAMIC = analysis_t(.true., .true.)        !< Flow and motion.
+
+   type, extends(analysis_t) :: scheme_t
       real(wp) :: dt = 1.0_wp
       real(wp) :: beta = 0.25_wp, gamma = 0.5_wp   !< Newmark's, for displacements of dynamic steps.
       real(wp) :: gamma_1 = 1.0_wp                 !< Weight of the new rate, for first-order rates.
@@ -27,38 +30,24 @@ module generalised_alpha
       real(wp) :: c_v = 0.0_wp, c_a = 0.0_wp, c_p = 0.0_wp   !< Slopes of those at their level against the new values.
    end type scheme_t
 contains
-   !> Whether an analysis of a kind has first-order rates, and so flow.
-   elemental logical function has_rates(kind)
-      integer, intent(in) :: kind
+   !> Whether an analysis has rates alone, no accelerations.
+   elemental logical function is_flow(analysis)
+      class(analysis_t), intent(in) :: analysis
 
-      has_rates = kind /= STATIC
-   end function has_rates
-
-   !> Whether an analysis of a kind has accelerations.
-   elemental logical function has_inertia(kind)
-      integer, intent(in) :: kind
-
-      has_inertia = kind == DYNAMIC
-   end function has_inertia
-
-   !> Whether an analysis of a kind has rates alone, no accelerations.
-   elemental logical function is_flow(kind)
-      integer, intent(in) :: kind
-
-      is_flow = kind == QUASI_STATIC
+      is_flow = analysis%has_rates .and. .not. analysis%has_inertia
    end function is_flow
 
-   !> Coefficients of a step of kind STATIC, QUASI_STATIC or DYNAMIC. Chung & Hulbert (1993), Jansen et al. (2000):
+   !> Coefficients of a step of an analysis. Chung & Hulbert (1993), Jansen et al. (2000):
    !> docs/theory/host.md section 4.1, gamma_1 section 4.2.
-   pure function make_scheme(kind, rho_inf, dt, begins) result(scheme)
-      integer, intent(in) :: kind
+   pure function make_scheme(analysis, rho_inf, dt, begins) result(scheme)
+      class(analysis_t), intent(in) :: analysis
       real(wp), intent(in) :: rho_inf   !< 0 to 1
       real(wp), intent(in) :: dt        !< [s]
       logical, intent(in), optional :: begins   !< A flow begins: the rates before say nothing. Default: no.
       type(scheme_t) :: scheme
 
-      scheme%has_rates = has_rates(kind)
-      scheme%has_inertia = has_inertia(kind)
+      scheme%has_rates = analysis%has_rates
+      scheme%has_inertia = analysis%has_inertia
       scheme%dt = dt
       if (.not. scheme%has_rates) return
       scheme%l_f = 1/(1 + rho_inf)
