@@ -58,8 +58,9 @@ module contact_interfaces
    type, extends(surface_forces_t) :: contacts_t
       type(contact_interface_t), allocatable :: interfaces(:)   !< Contacts of the model, then what is tied to plates.
       type(contact_status_t) :: status      !< Status of the first interface that failed.
+      integer :: corrections = 0            !< Corrections that the step had had at the last evaluation.
    contains
-      procedure :: act, evaluate, missing, add, follow_turns, message, forces, find_closed, stretch
+      procedure :: act, evaluate, missing, add, message, forces, find_closed, stretch
       procedure :: probe, begin_friction, accept_friction, exchange_friction
    end type contacts_t
 contains
@@ -182,10 +183,12 @@ contains
       self%interfaces(:size(acts))%acts = acts
    end subroutine act
 
-   !> Everything at given displacements; false if a kernel refuses them. docs/theory/contact.md sections 2 to 4.
-   logical function evaluate(self, x, with_slopes) result(good)
+   !> Everything at given displacements; false if a kernel refuses them. docs/theory/contact.md sections 2 to 4. A node
+   !> that slid before the last correction does not slide the other way: section 9.
+   logical function evaluate(self, x, corrections, with_slopes) result(good)
       class(contacts_t), intent(inout) :: self
       real(wp), intent(in) :: x(:, :)
+      integer, intent(in) :: corrections
       logical, intent(in) :: with_slopes
       real(wp) :: rounding(size(self%interfaces))   !< Rounding of the forces of springs [kN].
       integer :: i
@@ -196,6 +199,10 @@ contains
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
+            if (allocated(t%friction)) then
+               if (corrections == 0) t%friction%side = 0
+               if (corrections > self%corrections) t%friction%side = t%result%side
+            end if
             call probe_one(t, x, with_slopes, .false., self%status)
             good = self%status%code == CONTACT_OK
             if (.not. good) return
@@ -206,7 +213,9 @@ contains
                                                                               *x(:DISPLACEMENTS, t%slave%node))
          end associate
       end do
-      self%turns = any([(self%interfaces(i)%acts .and. self%interfaces(i)%result%turns, i=1, size(self%interfaces))])
+      self%corrections = corrections
+      self%unsettled = any([(self%interfaces(i)%acts .and. self%interfaces(i)%result%turns, i=1, &
+                             size(self%interfaces))])
       self%rounding = norm2(rounding)
    end function evaluate
 
@@ -235,7 +244,8 @@ contains
       end do
    end function probe
 
-   !> One of them, with the friction that its step starts from. status: as of contact_evaluate.
+   !> One of them, with the friction that its step starts from; aside, no node has slid before. status: as of
+   !> contact_evaluate.
    subroutine probe_one(t, x, with_tangent, aside, status)
       type(contact_interface_t), intent(inout), target :: t
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
@@ -253,6 +263,7 @@ contains
          return
       end if
       if (allocated(t%friction)) then
+         if (aside) t%friction%side = 0
          t%friction%slave_dx = x(:DISPLACEMENTS, t%slave%node) - t%slave_u
          t%friction%master_dx = displacements_of_master(t, x) - t%master_u
       end if
@@ -302,18 +313,6 @@ contains
          end associate
       end do
    end function begin_friction
-
-   subroutine follow_turns(self, fresh)
-      class(contacts_t), intent(inout) :: self
-      logical, intent(in) :: fresh
-      integer :: i
-
-      do i = 1, size(self%interfaces)
-         associate (t => self%interfaces(i))
-            if (allocated(t%friction)) t%friction%side = merge(0, t%result%side, fresh)
-         end associate
-      end do
-   end subroutine follow_turns
 
    !> Takes the tractions at the end of an accepted step; what sliding has dissipated in it [kJ].
    !> docs/theory/contact.md section 9.

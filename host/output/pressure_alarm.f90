@@ -109,9 +109,9 @@ contains
       type(run_t), intent(in) :: run
       logical, intent(inout) :: told
 
-      if (told .or. run%constraint%drinks == 0) return
+      if (told .or. run%constraint%stuck == 0) return
       told = .true.
-      associate (x => run%domain%mesh%x(:, run%dofs%node(run%constraint%drinks)))
+      associate (x => run%domain%mesh%x(:, run%dofs%node(run%constraint%stuck)))
          call print_warning(now_in(run)//'the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, '// &
             'or under rain, left its limit three times within the step, and keeps it although water enters there. '// &
             'Shorten the steps or refine the mesh there.')

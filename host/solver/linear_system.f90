@@ -118,18 +118,19 @@ contains
 
    !> Contacts at given displacements, and room for them in the matrix; false if they refuse these. The pattern grows
    !> only: a contact that opens leaves it alone.
-   logical function update_contacts(system, dofs, pattern, x, slopes, assembly) result(good)
+   logical function update_contacts(system, dofs, pattern, x, corrections, slopes, assembly) result(good)
       type(system_t), intent(inout) :: system
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(inout) :: pattern
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m, kPa]
+      integer, intent(in) :: corrections   !< Corrections that the step has had.
       logical, intent(in) :: slopes
       type(assembly_t), intent(inout) :: assembly
       integer, allocatable :: missing(:, :)
 
       good = .true.
       if (.not. allocated(system%contacts)) return
-      good = system%contacts%evaluate(x, slopes)
+      good = system%contacts%evaluate(x, corrections, slopes)
       if (.not. good .or. .not. slopes) return
       missing = system%contacts%missing(pattern)
       if (size(missing) > 0) call join_unknowns(dofs, missing, system, pattern, assembly)

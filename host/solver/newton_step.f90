@@ -64,7 +64,6 @@ contains
       integer :: status, outcome
 
       call begin_iterate(solution, at)
-      solution%log = log_t()
       scheme = solution%scheme
       associate (s => solution, log => solution%log, system => solution%system)
          call begin_step(solution, at)
@@ -112,18 +111,18 @@ contains
          ! Those of iterates on the way, and of steps that fail, may be of any size.
          system%largest = max(system%largest, log%forces)
          system%first_error = maxval(log%first_error)
-         if (allocated(system%contacts)) call system%contacts%follow_turns(fresh=.true.)
          s%assembly%slopes%known = .true.
          call add_elapsed(system%seconds(T_REST), at%t0)
       end associate
    end subroutine take_step
 
-   !> Room for residual and correction.
+   !> An empty log, and room for residual and correction.
    subroutine begin_iterate(solution, at)
-      type(solution_t), intent(in) :: solution
+      type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
       allocate (at%rhs(solution%dofs%n), at%dx(solution%dofs%n), source=0.0_wp)
+      solution%log = log_t()
       at%t0 = clock()
    end subroutine begin_iterate
 
@@ -142,12 +141,9 @@ contains
          at%rough = is_tight(solution%domain%regions) .and. .not. allocated(new%laws)
          if (at%rough) call follow_error(merge(system%first_error, huge(1.0_wp), assembly%source == BY_SLOPES), &
                                          solution, at)
-         if (allocated(system%contacts)) then
-            call system%contacts%follow_turns(fresh=.true.)
-            if (assembly%with_change) then
-               log%outcome = merge(CONVERGED, CONTACT_FAILED, system%contacts%forces(solution%dofs, old%x, at%touched))
-               if (log%outcome /= CONVERGED) return
-            end if
+         if (allocated(system%contacts) .and. assembly%with_change) then
+            log%outcome = merge(CONVERGED, CONTACT_FAILED, system%contacts%forces(solution%dofs, old%x, at%touched))
+            if (log%outcome /= CONVERGED) return
          end if
          call predict(scheme, control%no_predictor, old%x, old%v, old%a, new%x)
          call advance_rates(scheme, old%x, old%v, old%a, new%x, new%v, new%a)
@@ -237,7 +233,7 @@ contains
          call add_elapsed(system%seconds(T_REST), at%t0)
          ! At the old level no force of contacts follows the unknowns.
          if (.not. update_contacts(system, solution%dofs, pattern, old%x + scheme%l_f*(new%x - old%x), &
-                                   at%with_slopes .and. scheme%l_f > 0.0_wp, assembly)) then
+                                   solution%log%iterations, at%with_slopes .and. scheme%l_f > 0.0_wp, assembly)) then
             outcome = CONTACT_FAILED
             return
          end if
@@ -276,14 +272,14 @@ contains
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
       real(wp) :: norm
-      logical :: turned, good
+      logical :: unsettled, good
 
       at%again = .false.
       associate (constraint => solution%constraint, assembly => solution%assembly, system => solution%system, &
                  control => solution%newton, log => solution%log)
          call choose_sides(solution%dofs, solution%pattern, assembly%values, solution%next%x, at%rhs, assembly%scale, &
-                           control%tolerance, constraint, turned)
-         if (allocated(system%contacts)) turned = turned .or. system%contacts%turns
+                           control%tolerance, constraint, unsettled)
+         if (allocated(system%contacts)) unsettled = unsettled .or. system%contacts%unsettled
          call measure(solution%dofs, constraint, assembly, at%rhs, system%rounding, system%largest, log)
          norm = norm2(pack(at%rhs, .not. constraint%fixed))
          ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
@@ -294,8 +290,8 @@ contains
             at%begun = max(at%norm_0, ROUNDING*norm2(assembly%scale))
          end if
          log%reduction = norm/max(at%begun, tiny(1.0_wp))
-         ! What turned to the other side of its limit, a pressure or a sliding node, has not been solved for yet.
-         if (.not. turned) then
+         ! What went to the other side of its limit, or is held back from it, has not been solved for yet.
+         if (.not. unsettled) then
             good = good_enough(control, log)
             at%done = good .and. .not. at%rough
             at%again = good .and. at%rough
@@ -334,7 +330,6 @@ contains
 
       at%t0 = clock()
       solution%log%iterations = solution%log%iterations + 1
-      if (allocated(solution%system%contacts)) call solution%system%contacts%follow_turns(fresh=.false.)
       associate (old => solution%state, new => solution%next, log => solution%log)
          log%before = log%changed
          call add_correction(solution%dofs, at%dx, new%x, log%correction, log%changed)
@@ -482,7 +477,6 @@ contains
       type(iterate_t) :: at
       integer :: status, i, f, steps
 
-      solution%log = log_t()
       associate (state => solution%state, work => solution%next, pattern => solution%pattern, log => solution%log, &
                  constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
          ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.

@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Values that a step prescribes, and the rows of the equations that say so: docs/theory/host.md section 7.1. Water
-!> pressures may have a limit: on a seepage face, and under rain, water runs off where the pressure stands at its limit
-!> and is free where it lies below. Which side acts is decided node by node within Newton's method: section 7.7.
+!> Values that a step prescribes, and the rows of the equations that say so: docs/theory/host.md section 7.1. An unknown
+!> may have an upper limit: it is held where it stands there and free where it lies below. Which side acts is decided
+!> unknown by unknown within Newton's method, as in the primal-dual active set strategy: section 7.7.
 module prescribed_values
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
@@ -13,9 +13,9 @@ module prescribed_values
    public :: constraint_t, is_released, constrain, begin_sides, choose_sides, loads_of_water
 
    real(wp), parameter :: AT_LIMIT = 1.0e-6_wp    !< Share of the limit, and [kPa]: so near a step leaves what it holds.
-   real(wp), parameter :: FLOW_SHARE = 0.01_wp    !< Share of Newton's tolerance, of a node's flows: less decides
-                                                  !< nothing.
-   integer, parameter :: MOST_RELEASES = 3        !< In a step; then a node that alternates keeps its limit.
+   real(wp), parameter :: LEAST_REACTION = 0.01_wp   !< Share of Newton's tolerance, of the magnitudes in a balance: less
+                                                  !< decides nothing.
+   integer, parameter :: MOST_RELEASES = 3        !< In a step; then an unknown that alternates keeps its limit.
 
    !> Prescribed unknowns and loads of a step.
    type :: constraint_t
@@ -24,11 +24,11 @@ module prescribed_values
       logical, allocatable :: released(:, :)  !< (fixes, nodes) Where no &fix acts in this step; not allocated: nowhere.
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
       real(wp), allocatable :: air_target(:)
-      ! Where a pressure has a limit the target is that, and `fixed` says whether it stands there.
-      logical, allocatable :: limited(:)      !< Unknowns with a limit: water pressures.
-      integer, allocatable :: limited_by(:)   !< The group of the mesh that their run-off belongs to.
+      ! Where an unknown has a limit the target is that, and `fixed` says whether it stands there.
+      logical, allocatable :: limited(:)      !< Unknowns with a limit.
+      integer, allocatable :: limited_by(:)   !< The group of the mesh that their reaction belongs to.
       integer, allocatable :: releases(:)     !< Number of times that they left their limit in this step.
-      integer :: drinks = 0                   !< One that keeps its limit although water enters there, 0: none.
+      integer :: stuck = 0                    !< One that keeps its limit although it should leave, 0: none.
       real(wp), allocatable :: rain_0(:), rain_1(:)   !< Rain in the loads below, before and after [m3/s].
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
@@ -104,16 +104,16 @@ contains
       end do
    end subroutine begin_sides
 
-   !> The sides after an iteration. A node is held where r + c (p - limit) > 0, r the run-off [m3/s] and c the slope of
-   !> its balance, and free elsewhere; what is smaller than the flows are known to leaves it as it is. A node that was
-   !> released too often keeps its limit and is noted in constraint%drinks.
-   pure subroutine choose_sides(dofs, pattern, values, x, run_off, flows, tolerance, constraint, changed)
+   !> The sides after an iteration. An unknown is held where r + c (x - limit) > 0, r the reaction that its limit asks
+   !> for and c the slope of its balance, and free elsewhere; what is smaller than the balance is known to leaves it as
+   !> it is. One that was released too often keeps its limit and is noted in constraint%stuck.
+   pure subroutine choose_sides(dofs, pattern, values, x, reaction, magnitudes, tolerance, constraint, changed)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
       real(wp), intent(in) :: values(:)     !< (entries) The matrix.
       real(wp), intent(in) :: x(:, :)       !< (FIELDS, nodes) [m, kPa]
-      real(wp), intent(in) :: run_off(:)    !< (unknowns) What the balance with all rows kept leaves [m3/s].
-      real(wp), intent(in) :: flows(:)      !< (unknowns) Magnitudes of all that is in it [m3/s].
+      real(wp), intent(in) :: reaction(:)   !< (unknowns) What the balance with all rows kept leaves [kN, m3/s].
+      real(wp), intent(in) :: magnitudes(:)   !< (unknowns) Magnitudes of all that is in it [kN, m3/s].
       real(wp), intent(in) :: tolerance     !< Newton's [-].
       type(constraint_t), intent(inout) :: constraint
       logical, intent(out) :: changed
@@ -121,15 +121,15 @@ contains
       integer :: i
 
       changed = .false.
-      constraint%drinks = 0
+      constraint%stuck = 0
       do i = 1, dofs%n
          if (.not. constraint%limited(i)) cycle
-         side = run_off(i) &
+         side = reaction(i) &
                 + abs(values(place_of(pattern, i, i)))*(x(dofs%field(i), dofs%node(i)) - constraint%target(i))
-         least = FLOW_SHARE*tolerance*flows(i)
+         least = LEAST_REACTION*tolerance*magnitudes(i)
          if (constraint%fixed(i) .and. side < -least) then
             if (constraint%releases(i) >= MOST_RELEASES) then
-               constraint%drinks = i
+               constraint%stuck = i
                cycle
             end if
             constraint%fixed(i) = .false.

@@ -12,14 +12,13 @@ module surface_forces
    type, abstract :: surface_forces_t
       ! Outcome of the last evaluation.
       integer :: active = 0              !< Nodes that are in contact.
-      logical :: turns = .false.         !< A node is held from turning at once from sliding one way to the other.
+      logical :: unsettled = .false.     !< Part of what the iterate asks for is held back: it is no solution yet.
       real(wp) :: rounding = 0.0_wp      !< Rounding of small differences of large displacements, times stiffness [kN].
    contains
       procedure(act_i), deferred :: act
       procedure(evaluate_i), deferred :: evaluate
       procedure(missing_i), deferred :: missing
       procedure(add_i), deferred :: add
-      procedure(follow_turns_i), deferred :: follow_turns
       procedure(message_i), deferred :: message
       procedure(forces_i), deferred :: forces
       procedure(find_closed_i), deferred :: find_closed
@@ -34,11 +33,13 @@ module surface_forces
          logical, intent(in) :: acts(:)   !< (contacts)
       end subroutine act_i
 
-      !> Evaluates forces, and their slopes if they are wanted; false where the displacements are refused.
-      logical function evaluate_i(self, x, with_slopes) result(good)
+      !> Evaluates forces, and their slopes if they are wanted; false where the displacements are refused. Forces may
+      !> depend on the evaluations before the last correction of the step.
+      logical function evaluate_i(self, x, corrections, with_slopes) result(good)
          import :: surface_forces_t, wp
          class(surface_forces_t), intent(inout) :: self
          real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) At the level l_f; displacements first [m].
+         integer, intent(in) :: corrections   !< Corrections of Newton's method that the step has had.
          logical, intent(in) :: with_slopes
       end function evaluate_i
 
@@ -59,14 +60,6 @@ module surface_forces
          logical, intent(in) :: with_slopes
          real(wp), intent(inout) :: residual(:), scale(:), values(:)   !< (unknowns) [kN], twice; (entries).
       end subroutine add_i
-
-      !> Notes before a correction which way nodes slide now, so that none turns with it from one way to the other. At
-      !> the start and the end of a step (`fresh`) no node has a way.
-      subroutine follow_turns_i(self, fresh)
-         import :: surface_forces_t
-         class(surface_forces_t), intent(inout) :: self
-         logical, intent(in) :: fresh
-      end subroutine follow_turns_i
 
       !> Says why the last displacements were refused.
       function message_i(self) result(text)
