@@ -5,7 +5,6 @@
 module ledger_observer
    use archive, only: archive_t
    use csv, only: csv_t, check_csv, write_row, hand_over, close_csv, is_open
-   use effect_indicators, only: indicators_of, indicator_columns
    use energy_ledger, only: ledger_t, exchange_ledger, book_step, book_creation, allowed_creation, &
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
@@ -26,7 +25,7 @@ module ledger_observer
    character(*), parameter :: COLUMNS = 'time,dt,stage,iterations,cuts,'// &
       'error_u_r,error_u_z,error_p_w,error_p_c,first_u_r,first_u_z,first_p_w,first_p_c,reduction,correction,'// &
       'rates,kinetic,skeleton,pores,gravity,loads,supports,seepage,damping,friction,imbalance,'// &
-      'outflow,outflow_air,localised,step_error,'
+      'outflow,outflow_air,localised,step_error'
    character(*), parameter :: REMEDY = 'shorten dt, set rho_inf = 0 where a contact opens and closes, or '// &
       'measure = ''change'' where weight rests'
    !> Steps in which the work of a load that has just begun exceeds by far that of its first step: it grows with the
@@ -39,7 +38,6 @@ module ledger_observer
       type(ledger_t) :: ledger
       !> (4, points) Stress of the damping in proportion to the stiffness; allocated where a region has it [kPa].
       real(wp), allocatable :: damping_stress(:, :)
-      real(wp), allocatable :: indicators(:)   !< Indicators of the last step.
    contains
       procedure :: exchange
       procedure :: hear
@@ -70,8 +68,7 @@ contains
       case (BEGINS)
          if (run%steps == 0 .and. any(run%domain%regions%stiffness_damping > 0.0_wp)) &
             allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
-         if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS// &
-                                                     indicator_columns(run%model), self%table, fault)
+         if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS, self%table, fault)
       case (STEP)
          call book(self, run, fault)
       case (TAKEN_OVER)
@@ -100,7 +97,6 @@ contains
          call find_mean_forces(run, force)
          call book_step(force, run, self%damping_stress, ledger)
          call book_creation(run, ledger)
-         self%indicators = indicators_of(run, ledger%kinetic)
          run%news%contact_work = ledger%contact
          if (.not. stage%has_inertia) return
          ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, &
@@ -147,8 +143,7 @@ contains
             run%scheme%dt, run%at%stage, log%iterations, run%cuts, log%error, log%first_error, log%reduction, &
             log%correction, real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, &
             ledger%gravity, ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%dissipated, &
-            imbalance(ledger), ledger%outflow, ledger%outflow_air, run%news%localised, run%control%error, &
-            self%indicators
+            imbalance(ledger), ledger%outflow, ledger%outflow_air, run%news%localised, run%control%error
       end associate
       call write_row(self%table, fault)
       call hand_over(self%table, fault)
