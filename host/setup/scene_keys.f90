@@ -136,12 +136,27 @@ contains
    subroutine refuse_old_keys(group, fault)
       type(group_t), intent(in) :: group   !< &scene.
       type(fault_t), intent(inout) :: fault
+      character(*), parameter :: EFFECTS(4) = [character(19) :: 'effects', 'effects_tolerance', 'effects_pilot_share', &
+                                               'effects_on_warning']
+      integer :: i
 
-      call refuse('accuracy', 'the local tolerance of the steps is now step_tolerance; "mud_study accuracy '// &
-                  trim(group%file)//' --accuracy A" measures the errors of the answers, and refines steps and mesh '// &
-                  'until they are below A.')
+      call refuse('accuracy', 'the local tolerance of the steps is now step_tolerance; '//measures())
+      call refuse('mesh', 'leave it out; '//measures())
+      call refuse('budget', 'leave it out; '//measures())
       call refuse('ordering', 'leave it out; the equations are ordered by AMD, beyond 10,000 unknowns by METIS.')
+      do i = 1, size(EFFECTS)
+         call refuse(trim(EFFECTS(i)), 'leave it out, and give analysis, fields and gravity; "mud_study effects '// &
+                     trim(group%file)//'" measures what each effect changes and writes the scene without those that '// &
+                     'do not matter.')
+      end do
    contains
+      function measures() result(text)
+         character(:), allocatable :: text
+
+         text = '"mud_study accuracy '//trim(group%file)//' --accuracy A" measures the errors of the answers, and '// &
+                'refines steps and mesh until they are below A.'
+      end function measures
+
       subroutine refuse(key, instead)
          character(*), intent(in) :: key, instead
 
