@@ -3,7 +3,7 @@
 !> law of a node: stick on a penalty, slip at the limit.
 !> docs/theory/contact.md section 9.
 module contact_friction
-   use contact_mortar, only: point_t, hats, hat_slopes, forces_on_nodes
+   use contact_mortar, only: point_t, hat_sums_t, add_under_hats, add_unit_forces, forces_on_nodes
    use contact_types, only: contact_options_t
    use kinds, only: wp
    implicit none (type, external)
@@ -77,36 +77,27 @@ contains
       t%value = sign(limit, t%value)
    end function traction_at
 
-   !> Parts of a pair in weight times slip of the three slave nodes, their derivatives, and drag(:, A) = int M_A (t N_s,
-   !> -t N_m) 2 pi r ds, the nodal forces of a unit traction at node A; weight times slip is drag times the way of the
-   !> nodes. docs/theory/contact.md section 9.
-   pure subroutine pair_slips(points, dx, weighted_slip, d_weighted_slip, drag)
+   !> Weights times slips of a pair at the three slave nodes, and drag(:, A) = int M_A (t N_s, -t N_m) 2 pi r ds, the
+   !> nodal forces of a unit traction at node A; weight times slip is drag times the way of the nodes.
+   !> docs/theory/contact.md section 9.
+   pure subroutine pair_slips(points, dx, slip, drag)
       type(point_t), intent(in) :: points(:)
       real(wp), intent(in) :: dx(2, 6)   !< Way of the nodes since the start of the step [m].
-      real(wp), intent(out) :: weighted_slip(3), d_weighted_slip(12, 3), drag(12, 3)
-      real(wp) :: m(3), dm(3), of_point(12), d_way(12), way(2), bend(2, 2), along
-      integer :: k, a
+      type(hat_sums_t), intent(out) :: slip
+      real(wp), intent(out) :: drag(12, 3)
+      real(wp) :: of_point(12), d_way(12), way(2), bend(2, 2)
+      integer :: k
 
-      weighted_slip = 0.0_wp
-      d_weighted_slip = 0.0_wp
       drag = 0.0_wp
       do k = 1, size(points)
          associate (p => points(k))
-            m = hats(p%s)
-            dm = hat_slopes(p%s)
             way = matmul(dx(:, 1:3), p%ns) - matmul(dx(:, 4:6), p%nm)
             bend(:, 1) = matmul(dx(:, 1:3), p%dns)
             bend(:, 2) = -matmul(dx(:, 4:6), p%dnm)
-            along = dot_product(p%t, way)
             d_way = matmul(way, p%d_t) + dot_product(p%t, bend(:, 1))*p%d_s + dot_product(p%t, bend(:, 2))*p%d_m
             of_point = forces_on_nodes(p, p%t)
-            do a = 1, 3
-               if (m(a) <= 0.0_wp) cycle
-               weighted_slip(a) = weighted_slip(a) + p%area*m(a)*along
-               drag(:, a) = drag(:, a) + p%area*m(a)*of_point
-               d_weighted_slip(:, a) = d_weighted_slip(:, a) + p%area*m(a)*(of_point + d_way) &
-                                       + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*along
-            end do
+            call add_under_hats(p, dot_product(p%t, way), of_point + d_way, slip)
+            call add_unit_forces(p, of_point, drag)
          end associate
       end do
    end subroutine pair_slips

@@ -15,8 +15,8 @@ module contact_mortar
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, find_overlap, integration_point, pair_points, pair_gaps, penetration, hats, &
-             hat_slopes, forces_on_nodes
+   public :: overlap_t, point_t, hat_sums_t, find_overlap, integration_point, pair_points, pair_gaps, &
+             add_under_hats, add_unit_forces, penetration, hats, hat_slopes, forces_on_nodes
    public :: POINTS, POSITION, SHARE, LARGEST_POINTS
 
    integer, parameter :: POINTS = 4   !< Gauss points of a segment.
@@ -63,6 +63,12 @@ module contact_mortar
       real(wp) :: d_s(12) = 0.0_wp, d_m(12) = 0.0_wp
       real(wp) :: d_xs(2, 12) = 0.0_wp, d_t(2, 12) = 0.0_wp, d_xm(2, 12) = 0.0_wp
    end type point_t
+
+   !> Integrals of a quantity under the hats of the three nodes of a slave edge, and their slopes by the local
+   !> coordinates.
+   type :: hat_sums_t
+      real(wp) :: value(3) = 0.0_wp, slope(12, 3) = 0.0_wp
+   end type hat_sums_t
 contains
    !> Piecewise linear on the halves of a slave edge: start, end, middle. docs/theory/contact.md section 2.3.
    pure function hats(s) result(m)
@@ -261,38 +267,55 @@ contains
       end do
    end subroutine pair_points
 
-   !> Parts of a pair of edges at the three slave nodes: weight int M 2 pi r dGamma and weight times gap, their
-   !> derivatives, and push(:, A) = int M (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
+   !> Weights int M 2 pi r dGamma of a pair of edges at the three slave nodes [m2] (plane: m), weights times gaps [m3]
+   !> (plane: m2), and push(:, A) = int M_A (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
    !> docs/theory/contact.md section 2.3.
-   pure subroutine pair_gaps(points, weight, weighted_gap, d_weight, d_weighted_gap, push)
+   pure subroutine pair_gaps(points, weight, gap, push)
       type(point_t), intent(in) :: points(:)
-      real(wp), intent(out) :: weight(3), weighted_gap(3)                             !< [m2], [m3] (plane: m, m2)
-      real(wp), intent(out) :: d_weight(12, 3), d_weighted_gap(12, 3), push(12, 3)
-      real(wp) :: m(3), dm(3), of_point(12)
-      integer :: k, a
+      type(hat_sums_t), intent(out) :: weight, gap
+      real(wp), intent(out) :: push(12, 3)
+      integer :: k
 
-      weight = 0.0_wp
-      weighted_gap = 0.0_wp
-      d_weight = 0.0_wp
-      d_weighted_gap = 0.0_wp
       push = 0.0_wp
       do k = 1, size(points)
          associate (p => points(k))
-            m = hats(p%s)
-            dm = hat_slopes(p%s)
-            of_point = forces_on_nodes(p, [p%t(2), -p%t(1)])
-            do a = 1, 3
-               if (m(a) <= 0.0_wp) cycle
-               weight(a) = weight(a) + p%area*m(a)*p%length
-               weighted_gap(a) = weighted_gap(a) + p%area*m(a)*p%phi
-               d_weight(:, a) = d_weight(:, a) + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*p%length + p%area*m(a)*p%d_length
-               d_weighted_gap(:, a) = d_weighted_gap(:, a) + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*p%phi &
-                                      + p%area*m(a)*p%d_phi
-               push(:, a) = push(:, a) + p%area*m(a)*of_point
-            end do
+            call add_under_hats(p, p%length, p%d_length, weight)
+            call add_under_hats(p, p%phi, p%d_phi, gap)
+            call add_unit_forces(p, forces_on_nodes(p, [p%t(2), -p%t(1)]), push)
          end associate
       end do
    end subroutine pair_gaps
+
+   !> Adds a point to the integrals of a quantity, which is given times the length of the tangent.
+   pure subroutine add_under_hats(p, value, slope, sums)
+      type(point_t), intent(in) :: p
+      real(wp), intent(in) :: value, slope(12)
+      type(hat_sums_t), intent(inout) :: sums
+      real(wp) :: m(3), dm(3)
+      integer :: a
+
+      m = hats(p%s)
+      dm = hat_slopes(p%s)
+      do a = 1, 3
+         if (m(a) <= 0.0_wp) cycle
+         sums%value(a) = sums%value(a) + p%area*m(a)*value
+         sums%slope(:, a) = sums%slope(:, a) + (m(a)*p%d_area + p%area*dm(a)*p%d_s)*value + p%area*m(a)*slope
+      end do
+   end subroutine add_under_hats
+
+   !> Adds what a point has of the nodal forces of a unit pressure or traction at each slave node.
+   pure subroutine add_unit_forces(p, of_point, forces)
+      type(point_t), intent(in) :: p
+      real(wp), intent(in) :: of_point(12)   !< As of forces_on_nodes [m].
+      real(wp), intent(inout) :: forces(12, 3)
+      real(wp) :: m(3)
+      integer :: a
+
+      m = hats(p%s)
+      do a = 1, 3
+         forces(:, a) = forces(:, a) + p%area*m(a)*of_point
+      end do
+   end subroutine add_unit_forces
 
    !> Forces on the nodes of a pair, slave first, of a unit force along a direction that pushes the surfaces apart at a
    !> point. docs/theory/contact.md sections 2.3 and 9.

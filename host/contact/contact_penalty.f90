@@ -5,8 +5,8 @@
 module contact_penalty
    use contact_friction, only: friction_t, traction_t, pair_slips, traction_at, tangential_stiffness, touching_share
    use contact_geometry, only: contact_geometry_t, check_coordinates, edge_boxes, boxes_around, boxes_meet
-   use contact_mortar, only: overlap_t, point_t, find_overlap, pair_points, pair_gaps, penetration, hats, POINTS, &
-                             POSITION, SHARE, LARGEST_POINTS
+   use contact_mortar, only: overlap_t, point_t, hat_sums_t, find_overlap, pair_points, pair_gaps, penetration, hats, &
+                             POINTS, POSITION, SHARE, LARGEST_POINTS
    use contact_projection, only: edge_t, edge_of, place, tangent
    use contact_response, only: response_t, nodal_forces_t, nodal_response, pointwise_response, new_forces, make_room, &
                                add_column
@@ -28,8 +28,8 @@ module contact_penalty
       type(overlap_t) :: overlap
       integer :: n = 0
       type(point_t) :: points(LARGEST_POINTS)        !< Integration points, the first n.
-      real(wp) :: d_weight(12, 3) = 0.0_wp, d_weighted_gap(12, 3) = 0.0_wp, push(12, 3) = 0.0_wp
-      real(wp) :: d_weighted_slip(12, 3) = 0.0_wp, drag(12, 3) = 0.0_wp   !< With friction.
+      type(hat_sums_t) :: weight, gap, slip          !< Gap and slip times the weight; the slip with friction.
+      real(wp) :: push(12, 3) = 0.0_wp, drag(12, 3) = 0.0_wp   !< Forces of a unit pressure and traction at each node.
    end type pair_t
 
    !> Room for an evaluation; what it holds between two is of no meaning.
@@ -153,7 +153,7 @@ contains
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
       real(wp) :: slaves(4, size(geometry%slave_edges, 2)), masters(4, size(geometry%master_edges, 2))
-      real(wp) :: weight(3), weighted_gap(3), missed
+      real(wp) :: missed
       integer :: e, master, n
 
       call boxes_around(slave_x, geometry%slave_edges, geometry%options%search_radius, slaves)
@@ -179,11 +179,11 @@ contains
                   status = contact_status_t(CONTACT_NO_PROJECTION, e, .false., missed)
                   return
                end if
-               call pair_gaps(pair%points(:pair%n), weight, weighted_gap, pair%d_weight, pair%d_weighted_gap, pair%push)
-            end associate
-            associate (nodes => geometry%slave_edges(:, e))
-               result%weight(nodes) = result%weight(nodes) + weight
-               result%gap(nodes) = result%gap(nodes) + weighted_gap
+               call pair_gaps(pair%points(:pair%n), pair%weight, pair%gap, pair%push)
+               associate (nodes => geometry%slave_edges(:, e))
+                  result%weight(nodes) = result%weight(nodes) + pair%weight%value
+                  result%gap(nodes) = result%gap(nodes) + pair%gap%value
+               end associate
             end associate
          end do
       end do
@@ -256,15 +256,15 @@ contains
       type(contact_result_t), intent(inout) :: result
       type(traction_t) :: t(geometry%slave_nodes)
       type(response_t) :: response
-      real(wp) :: dx(2, 6), weighted_slip(3)
+      real(wp) :: dx(2, 6)
       integer :: i
 
       result%slip = 0.0_wp
       do i = 1, result%pairs
          associate (pair => work%pair(i), nodes => geometry%slave_edges(:, work%pair(i)%slave))
             dx = of_edges(geometry, pair%slave, pair%master, friction%slave_dx, friction%master_dx)
-            call pair_slips(pair%points(:pair%n), dx, weighted_slip, pair%d_weighted_slip, pair%drag)
-            result%slip(nodes) = result%slip(nodes) + weighted_slip
+            call pair_slips(pair%points(:pair%n), dx, pair%slip, pair%drag)
+            result%slip(nodes) = result%slip(nodes) + pair%slip%value
          end associate
       end do
       where (result%weight > 0.0_wp) result%slip = result%slip/result%weight
@@ -386,10 +386,10 @@ contains
             end do
             associate (pair => work%pair(i), at => work%position(unknown))
                work%right(at) = work%right(at) &
-                                + by_gap*(pair%d_weighted_gap(:, a) - result%gap(node)*pair%d_weight(:, a))
+                                + by_gap*(pair%gap%slope(:, a) - result%gap(node)*pair%weight%slope(:, a))
                if (present(by_slip)) then
                   work%right(at) = work%right(at) &
-                                   + by_slip*(pair%d_weighted_slip(:, a) - result%slip(node)*pair%d_weight(:, a))
+                                   + by_slip*(pair%slip%slope(:, a) - result%slip(node)*pair%weight%slope(:, a))
                   work%left(at) = work%left(at) + pair%drag(:, a)
                else
                   work%left(at) = work%left(at) + pair%push(:, a)

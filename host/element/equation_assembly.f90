@@ -24,7 +24,7 @@ module equation_assembly
       real(wp), allocatable :: floor(:)              !< Assembled floor: what a volume balance is small against.
       !> Sum of the magnitudes of the elements' balances of water, in the rows of p_w, where air is an unknown.
       real(wp), allocatable :: water(:)
-      real(wp) :: unresolved = 0.0_wp   !< Force of which the tolerance is what rounding leaves of ties [kN].
+      real(wp) :: unresolved = 0.0_wp   !< Force of which the tolerance is what rounding leaves of displacements [kN].
       logical :: with_change = .false.               !< Whether a step is measured against what it changes.
       real(wp) :: rounding_share = 0.0_wp            !< Then what changes counts as at least this share of all forces.
       real(wp), allocatable :: d_r(:, :)             !< With it: change of every element's r, see element_t.

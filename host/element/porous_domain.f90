@@ -13,9 +13,9 @@ module porous_domain
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: domain_t, region_t, fluids_t, gauss_t, model_state_t, source_i, prepare_domain, new_state_of, copy_state, &
-             mixture_density, given_pressures_at, pressures_at, is_present, gravity_on, strain_of, &
-             keep_element_state, exchange_state, law_of
+   public :: domain_t, region_t, gauss_t, model_state_t, prepare_domain, new_state_of, copy_state, mixture_density, &
+             given_pressures_at, pressures_at, is_present, gravity_on, strain_of, keep_element_state, exchange_state, &
+             law_of
    public :: edge_point_t, points_of_edge, PER_EDGE
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 

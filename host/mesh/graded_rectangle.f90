@@ -10,7 +10,7 @@ module graded_rectangle
    use triangle_mesh, only: mesh_t, add_group
    implicit none (type, external)
    private
-   public :: graded_mesh, graded_axis
+   public :: graded_mesh
 contains
    !> Coordinates of the cell ends between breaks; `ratio` is the size of a cell over that of the one before it.
    pure function graded_axis(breaks, cells, ratio) result(x)

@@ -15,7 +15,7 @@ module run_state
    use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
-   public :: run_t, news_t, exchange_run, enter_stage, now_in, reset_control
+   public :: run_t, exchange_run, enter_stage, now_in, reset_control
    public :: LIMITS, LIMIT_NAMES, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
 
    !> Limits that keep a step from being longer: the first three in the order of the fields.

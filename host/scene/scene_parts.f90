@@ -12,7 +12,7 @@ module scene_parts
    implicit none (type, external)
    private
    public :: origin_t, scene_item_t, amplitude_t, stage_t
-   public :: NAME_LENGTH, FINGERPRINT_LENGTH, NEVER, place_of, amplitude_at
+   public :: NAME_LENGTH, NEVER, place_of, amplitude_at
    public :: PRESCRIBED_P_A, PRESCRIBED_WORDS, PRESCRIBED_OF_BODY
    public :: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, &
              LOAD_OF_BODY

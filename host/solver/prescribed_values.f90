@@ -13,8 +13,8 @@ module prescribed_values
    public :: constraint_t, is_released, constrain, begin_sides, choose_sides, loads_of_water
 
    real(wp), parameter :: AT_LIMIT = 1.0e-6_wp    !< Share of the limit, and [kPa]: so near a step leaves what it holds.
-   real(wp), parameter :: LEAST_REACTION = 0.01_wp   !< Share of Newton's tolerance, of the magnitudes in a balance: less
-                                                  !< decides nothing.
+   real(wp), parameter :: LEAST_REACTION = 0.01_wp   !< Share of Newton's tolerance, of the magnitudes in a balance:
+                                                     !< less decides nothing.
    integer, parameter :: MOST_RELEASES = 3        !< In a step; then an unknown that alternates keeps its limit.
 
    !> Prescribed unknowns and loads of a step.

@@ -32,7 +32,7 @@ module sparse_factors
       real(c_double) :: control(CONTROLS) = 0.0_c_double, info(INFOS) = 0.0_c_double
       integer(c_int), allocatable :: start(:), index(:)   !< The pattern, from 0.
       type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr
-      integer :: n_symbolic = 0, n_numeric = 0, n_solve = 0
+      integer :: n_numeric = 0, n_solve = 0
       real(wp) :: entries = 0.0_wp                        !< In the factors.
       logical :: indefinite = .false.                     !< The determinant is negative: see factorise.
    end type sparse_t
@@ -108,7 +108,6 @@ contains
       sparse%control(CONTROL_ORDERING) = merge(METIS, AMD, size(row) - 1 > MANY)
       status = merge(SOLVED, FAILED, umfpack_di_symbolic(size(row) - 1, size(row) - 1, sparse%start, sparse%index, &
                                                          c_null_ptr, sparse%symbolic, sparse%control, sparse%info) == 0)
-      sparse%n_symbolic = sparse%n_symbolic + 1
    end subroutine analyse
 
    !> Numeric factors of the matrix with these values; status SOLVED, SINGULAR or FAILED. SINGULAR: a pivot is 0 or the
