@@ -27,10 +27,7 @@ contains
       type(mesh_t), intent(in) :: mesh
       character(*), intent(in) :: name
 
-      do place = 1, size(mesh%groups)
-         if (mesh%groups(place)%name == name) return
-      end do
-      place = 0
+      place = findloc(mesh%groups%name == name, .true., dim=1)
    end function find_group
 
    !> Adds a group and lists its nodes.

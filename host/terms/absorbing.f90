@@ -95,6 +95,11 @@ contains
       if (fault%code /= 0) return
       if (size(model%domain%mesh%groups(side%group)%edges, 2) == 0) call raise(fault, EXIT_GROUP, place_of(side)// &
          'group '''//trim(boundary)//''' has no edges that waves could leave through.')
+      side%edges = facing_edges(model, side%group, acting_stages(model, side%action_t))
+      associate (beside => triangles_beside(model%domain%mesh%t6, side%edges))
+         side%elements = beside(1, :)
+      end associate
+      allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
       model%actions = [model%actions, side%action_t]
       if (.not. allocated(self%sides)) allocate (self%sides(0))
       self%sides = [self%sides, side]
@@ -180,11 +185,6 @@ contains
          associate (side => self%sides(i))
             problem%constraint%linear = [problem%constraint%linear, none]
             side%dashpots = size(problem%constraint%linear)
-            side%edges = facing_edges(problem%model, side%group, acting_stages(problem%model, side%action_t))
-            associate (beside => triangles_beside(problem%domain%mesh%t6, side%edges))
-               side%elements = beside(1, :)
-            end associate
-            allocate (side%behind(4, size(side%edges, 2)), source=0.0_wp)
             allocate (side%held(problem%dofs%n), source=.false.)
             allocate (side%incoming(problem%dofs%n), side%carried(problem%dofs%n), source=0.0_wp)
             if (side%repeats) cycle

@@ -151,6 +151,9 @@ DOUBTS = [
      ["value_slope = 9.81 of p_w kPa/m grows upwards"]),
     ("rain on a given pressure", "&load", "&load group = 'top' kind = 'water' value = 1e-6 /\n&load",
      ["no effect on 2 of the 2 edges of 'top' in stage load", "pressure of water"]),
+    ("rain on a pressure that is given as long as the stage lasts", "'top' field = 'p_w'",
+     "'top' field = 'p_w' from = -1 until = 99 /\n&load group = 'top' kind = 'water' value = 1e-6",
+     ["no effect on 2 of the 2 edges of 'top' in stage load", "pressure of water"]),
     ("history before what it acts on", "&stage", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"
      "&load group = 'top' kind = 'shear_r' value = 0.1 history = 'h' stages = 'load' /\n&stage",
      ["'h' begins at 0 s", "acts from 1 s on, at once with the factor 1, which then stays"]),
