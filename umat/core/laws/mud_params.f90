@@ -245,7 +245,7 @@ contains
       real(wp) :: unit
 
       unit = stress_unit(props)
-      if (all_finite(props(:P_HYSTERESIS)) .and. all_finite(props([P_C_CHI, P_C_ELL])) .and. &
+      if (all_finite(props(:P_HYSTERESIS)) .and. is_finite(props(P_C_CHI)) .and. is_finite(props(P_C_ELL)) .and. &
           abs(unit - 1.0_wp) <= 0.0_wp) then
          if (no_fault(props(:P_HYSTERESIS)) .and. props(P_HYSTERESIS) < 0.5_wp .and. &
              all(abs(props([P_C_CHI, P_C_ELL])) <= 0.0_wp)) return
