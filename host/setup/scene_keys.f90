@@ -146,8 +146,8 @@ contains
       call refuse('ordering', 'leave it out; the equations are ordered by AMD, beyond 10,000 unknowns by METIS.')
       do i = 1, size(EFFECTS)
          call refuse(trim(EFFECTS(i)), 'leave it out, and give analysis, fields and gravity; "mud_study effects '// &
-                     trim(group%file)//'" measures what each effect changes and writes the scene without those that '// &
-                     'do not matter.')
+                     trim(group%file)//'" measures what each effect changes and writes the scene without those '// &
+                     'that do not matter.')
       end do
    contains
       function measures() result(text)
