@@ -10,7 +10,7 @@ module element_equations
                            matrix_of, LAST_U
    use porous_domain, only: domain_t, region_t, model_state_t, gauss_t, mixture_density, given_pressures_at, &
                             gravity_on, law_of, COUPLED
-   use porous_balance, only: kinematics_t, pore_t, point_response, PLACES, RR, TT, RZ, U
+   use porous_balance, only: kinematics_t, point_state_t, point_response, PLACES, RR, TT, RZ, U
    use generalised_alpha, only: scheme_t
    use carried_slopes, only: slopes_t, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
@@ -252,7 +252,7 @@ contains
       type(model_state_t), intent(inout) :: new
       logical, intent(in) :: with_tangent
       type(element_t), intent(inout) :: out
-      type(pore_t) :: pore
+      type(point_state_t) :: before, after
       type(sums_t) :: sums
       type(rows_t) :: rows
       real(wp) :: response(PLACES), tangent(PLACES, PLACES), change(6, 4), rate, drift(2, 2)
@@ -271,13 +271,14 @@ contains
          q = (element - block%first)*domain%rule + g
          associate (gp => domain%gauss(g, element), k => points%k(q), &
                     region => domain%regions(domain%region_of(element)))
-            call point_response(domain, region, scheme, k, old%stress(:, p), points%response, q, &
-                                pore_t(old%e(p), old%s(p), old%s_rate(p)), pore, with_tangent, response, tangent, drift)
-            new%stress(:, p) = points%response%stress(:, q)
-            new%e(p) = pore%e
+            before = point_state_t(old%stress(:, p), old%e(p), old%s(p), old%s_rate(p))
+            call point_response(domain, region, scheme, k, points%response, q, before, after, with_tangent, response, &
+                                tangent, drift)
+            new%stress(:, p) = after%stress
+            new%e(p) = after%e
             if (region%with_w) then
-               new%s(p) = pore%s
-               new%s_rate(p) = pore%s_rate
+               new%s(p) = after%s
+               new%s_rate(p) = after%s_rate
                rate = sum(abs(scheme%c_v*k%strain(1:3)))*gp%weight
                do i = 1, n_p
                   out%stretch([LAST_U + i, LAST_U + n_p + i]) = out%stretch([LAST_U + i, LAST_U + n_p + i]) &
@@ -287,10 +288,9 @@ contains
             rows = weighted_rows(gp)
             call add_forces(rows, response, sums%r)
             call add_balances(rows, n_fields, response, sums%r)
-            if (out%with_change) call add_forces(rows, &
-               change_of(domain, region, k, gravity_on(old, element), old%stress(:, p), old%e(p), old%s(p), response), &
-               change)
-            if (scheme%has_inertia) call add_flight_scale(domain, region, k, scheme, pore, gp, out%stretch)
+            if (out%with_change) call add_forces(rows, change_of(domain, region, k, gravity_on(old, element), before, &
+                                                                 response), change)
+            if (scheme%has_inertia) call add_flight_scale(domain, region, k, scheme, after, gp, out%stretch)
             if (with_tangent) call add_tangent(gp, rows, n_fields, tangent, sums%k)
          end associate
       end do
@@ -301,18 +301,18 @@ contains
    end subroutine add_element
 
    !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
-   pure subroutine add_flight_scale(domain, region, k, scheme, pore, gp, stretch)
+   pure subroutine add_flight_scale(domain, region, k, scheme, after, gp, stretch)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
       type(scheme_t), intent(in) :: scheme
-      type(pore_t), intent(in) :: pore   !< At the end of the step.
+      type(point_state_t), intent(in) :: after   !< At the end of the step.
       type(gauss_t), intent(in) :: gp
       real(wp), intent(inout) :: stretch(:)
       real(wp) :: force, part
       integer :: i
 
-      force = mixture_density(domain, region, pore%e/(1 + pore%e), pore%s) &
+      force = mixture_density(domain, region, after%e/(1 + after%e), after%s) &
               *(k%gravity + FLIGHT_SHARE*norm2(k%velocity)/scheme%dt)
       do i = 1, size(gp%n)
          part = gp%weight*force*abs(gp%n(i))
@@ -322,20 +322,19 @@ contains
    end subroutine add_flight_scale
 
    !> Change of the total stress and of the weight at a point in a step; inertia, sources and damping count whole.
-   pure function change_of(domain, region, k, gravity0, stress0, e0, s0, response) result(change)
+   pure function change_of(domain, region, k, gravity0, before, response) result(change)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(kinematics_t), intent(in) :: k
       real(wp), intent(in) :: gravity0             !< Before the step [m/s2].
-      real(wp), intent(in) :: stress0(6)           !< Effective stress before the step [kPa].
-      real(wp), intent(in) :: e0, s0               !< Void ratio and degree of saturation before it [-].
+      type(point_state_t), intent(in) :: before
       real(wp), intent(in) :: response(PLACES)
       real(wp) :: change(PLACES)
 
       change = 0.0_wp
-      change(RR:RZ) = response(RR:RZ) - stress0(:4)
-      if (region%with_w) change(RR:TT) = change(RR:TT) + (k%w0 + (1 - s0)*k%c0)
+      change(RR:RZ) = response(RR:RZ) - before%stress(:4)
+      if (region%with_w) change(RR:TT) = change(RR:TT) + (k%w0 + (1 - before%s)*k%c0)
       change(U + 1:U + 2) = response(U + 1:U + 2)
-      change(U + 2) = change(U + 2) - mixture_density(domain, region, e0/(1 + e0), s0)*gravity0
+      change(U + 2) = change(U + 2) - mixture_density(domain, region, before%e/(1 + before%e), before%s)*gravity0
    end function change_of
 end module element_equations

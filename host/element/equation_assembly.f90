@@ -87,7 +87,6 @@ contains
       real(wp) :: seconds, t0
       type(block_t) :: block
       type(block_t) :: failed   !< The first block that failed.
-      type(points_t) :: points
       type(element_t) :: out
       integer :: e, ne, rates, threads
 
@@ -112,22 +111,7 @@ contains
       assembly%rate_evaluations = rates
       assembly%bad_element = 0
       if (failed%first <= ne) then
-         ! Once more one by one, for the answer of the first that failed: which is first does not depend on the threads.
-         do e = failed%first, failed%last
-            block%first = e
-            block%last = e
-            call update_block(domain, scheme, old, new, with_tangent, assembly%slopes, block, points)
-            if (block%report%code /= 0) exit
-         end do
-         ! A law that remembers its calls may refuse none of them now: then its answer of before counts.
-         if (block%report%code == 0) then
-            e = failed%first + (failed%report%point - 1)/domain%rule
-            block%report = failed%report
-            block%report%point = failed%report%point - (e - failed%first)*domain%rule
-         end if
-         assembly%bad_element = e
-         assembly%bad_point = block%report%point
-         assembly%bad = block%report
+         call find_failed_point(failed)
          return
       end if
       if (with_tangent) then
@@ -178,6 +162,32 @@ contains
             end do
          end do
       end subroutine compute_elements
+
+      !> The first point that failed, of a block that did: its elements once more one by one, so that which is first does
+      !> not depend on the threads.
+      subroutine find_failed_point(failed)
+         type(block_t), intent(in) :: failed
+         type(block_t) :: block
+         type(points_t) :: points
+         integer :: e
+
+         block = failed
+         do e = failed%first, failed%last
+            block%first = e
+            block%last = e
+            call update_block(domain, scheme, old, new, with_tangent, assembly%slopes, block, points)
+            if (block%report%code /= 0) exit
+         end do
+         ! A law that remembers its calls may refuse none of them now: then its answer of before counts.
+         if (block%report%code == 0) then
+            e = failed%first + (failed%report%point - 1)/domain%rule
+            block%report = failed%report
+            block%report%point = failed%report%point - (e - failed%first)*domain%rule
+         end if
+         assembly%bad_element = e
+         assembly%bad_point = block%report%point
+         assembly%bad = block%report
+      end subroutine find_failed_point
 
       !> An element to its places in the sums.
       subroutine give(e, out)

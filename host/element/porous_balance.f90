@@ -13,7 +13,7 @@ module porous_balance
    use generalised_alpha, only: scheme_t, rate_of
    implicit none (type, external)
    private
-   public :: kinematics_t, pore_t, point_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
+   public :: kinematics_t, point_state_t, point_response, PLACES, RR, ZZ, TT, RZ, U, PW, PC, GW, GA
 
    integer, parameter :: PLACES = 12
    ! Places, or places before the first; the strain comes first.
@@ -37,26 +37,26 @@ module porous_balance
       real(wp) :: source(4)
    end type kinematics_t
 
-   !> The pores of a point: void ratio, saturation and its rate.
-   type :: pore_t
-      real(wp) :: e, s, s_rate
-   end type pore_t
+   !> What a point carries from step to step beside the state variables of its law.
+   type :: point_state_t
+      real(wp) :: stress(6)      !< Effective [kPa].
+      real(wp) :: e, s, s_rate   !< Void ratio, degree of saturation and its rate [1/s].
+   end type point_state_t
 contains
-   !> Response of a point of a region, its tangent where it is asked for, and its pores at the end of the step.
+   !> Response of a point of a region, its tangent where it is asked for, and its state at the end of the step.
    !> docs/theory/host.md sections 2, 3.3 and 3.4. response: stress [kPa], force per volume [kN/m3], sources of volume
    !> [1/s], fluxes [m/s]. In static steps, in drained and in dry regions the places of the fluids are 0; pressures act
    !> in the stress in any case.
-   subroutine point_response(domain, region, scheme, k, stress0, material, point, old, new, with_tangent, response, &
-                             tangent, drift)
+   subroutine point_response(domain, region, scheme, k, material, point, old, new, with_tangent, response, tangent, &
+                             drift)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
       type(scheme_t), intent(in) :: scheme
       type(kinematics_t), intent(in) :: k
-      real(wp), intent(in) :: stress0(6)     !< Effective stress before the step.
       type(response_t), intent(in) :: material   !< Answer for a batch of points; with slopes for a tangent.
       integer, intent(in) :: point           !< Place of the point in it.
-      type(pore_t), intent(in) :: old
-      type(pore_t), intent(out) :: new
+      type(point_state_t), intent(in) :: old
+      type(point_state_t), intent(out) :: new
       logical, intent(in) :: with_tangent
       real(wp), intent(out) :: response(PLACES), tangent(PLACES, PLACES)   !< The tangent where it is asked for.
       real(wp), intent(out) :: drift(2, 2)   !< Magnitudes of parts of the fluxes: both fluids, water [m/s].
@@ -85,7 +85,7 @@ contains
       !> Void ratio and saturation at the end of the step, and the mixture at its levels: saturated where the scene has
       !> no suction.
       subroutine fill_pores()
-         new = pore_t(material%void_ratio(point), 1.0_wp, 0.0_wp)
+         new = point_state_t(material%stress(:, point), material%void_ratio(point), 1.0_wp, 0.0_wp)
          n1 = new%e/(1 + new%e)
          n = old%e/(1 + old%e)
          n = n + l*(n1 - n)
@@ -143,7 +143,7 @@ contains
          resists_rate = allocated(region%against_rate) .and. scheme%has_rates
          rho_n = -region%rho_s
          rho_s = 0.0_wp
-         response(1:4) = stress0(1:4) + l_s*(material%stress(1:4, point) - stress0(1:4))
+         response(1:4) = old%stress(1:4) + l_s*(new%stress(1:4) - old%stress(1:4))
          if (resists_rate) response(1:4) = response(1:4) + matmul(region%against_rate, k%rate)
          if (region%with_c) then
             response(1:3) = response(1:3) - (p_w + (1 - s)*p_c)
