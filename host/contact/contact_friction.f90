@@ -3,23 +3,23 @@
 !> law of a node: stick on a penalty, slip at the limit.
 !> docs/theory/contact.md section 9.
 module contact_friction
-   use contact_mortar, only: point_t, hat_sums_t, add_under_hats, add_unit_forces, forces_on_nodes
+   use contact_mortar, only: mortar_point_t, hat_sums_t, add_under_hats, add_unit_forces, forces_on_nodes
    use contact_types, only: contact_options_t
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: friction_t, traction_t, pair_slips, traction_at
+   public :: friction_state_t, traction_t, pair_slips, traction_at
    public :: tangential_stiffness, touching_share
 
    real(wp), parameter :: TANGENTIAL_SHARE = 0.1_wp   !< Share of the penalty, where nothing else is given [-].
 
    !> State of friction from which a step starts.
-   type :: friction_t
+   type :: friction_state_t
       real(wp), allocatable :: slave_dx(:, :), master_dx(:, :)   !< (2, nodes) Way since the start of the step [m].
       real(wp), allocatable :: traction(:)   !< (slave nodes) At the start, along the slave's tangent [kPa].
       real(wp), allocatable :: gap(:)        !< (slave nodes) At the start, open > 0 [m].
       integer, allocatable :: side(:)        !< (slave nodes) Way of sliding at the iterate before: -1, 1; 0: none.
-   end type friction_t
+   end type friction_state_t
 
    !> Traction of a node and its slopes.
    type :: traction_t
@@ -81,7 +81,7 @@ contains
    !> nodal forces of a unit traction at node A; weight times slip is drag times the way of the nodes.
    !> docs/theory/contact.md section 9.
    pure subroutine pair_slips(points, dx, slip, drag)
-      type(point_t), intent(in) :: points(:)
+      type(mortar_point_t), intent(in) :: points(:)
       real(wp), intent(in) :: dx(2, 6)   !< Way of the nodes since the start of the step [m].
       type(hat_sums_t), intent(out) :: slip
       real(wp), intent(out) :: drag(12, 3)

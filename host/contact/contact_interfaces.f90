@@ -4,7 +4,7 @@ module contact_interfaces
    use archive, only: archive_t
    use texts, only: whole
    use kinds, only: wp
-   use contact_friction, only: friction_t
+   use contact_friction, only: friction_state_t
    use contact_geometry, only: contact_geometry_t, contact_prepare
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate, &
                               slid_work
@@ -14,7 +14,7 @@ module contact_interfaces
    use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
    use unknown_fields, only: DISPLACEMENTS
-   use sparsity_pattern, only: pattern_t, place_of
+   use sparsity_pattern, only: pattern_t, entry_of
    use surface_forces, only: surface_forces_t
    implicit none (type, external)
    private
@@ -40,7 +40,7 @@ module contact_interfaces
       type(contact_workspace_t) :: work
       type(contact_result_t) :: result      !< Outcome at the iterates of a step.
       type(contact_result_t) :: probe       !< Outcome at other displacements, independent of the step.
-      type(friction_t), allocatable :: friction   !< State from which the step starts; not allocated: it has none.
+      type(friction_state_t), allocatable :: friction   !< State from which the step starts; not allocated: it has none.
       real(wp), allocatable :: slave_u(:, :), master_u(:, :)   !< (2, nodes) Displacements there [m].
       type(nodal_forces_t) :: on_plate      !< Forces where the master is a plate.
       type(plate_link_t) :: plate           !< Plate whose face is the master.
@@ -124,8 +124,8 @@ contains
       nodes = [slave%node, master%node]
       one%unknown = reshape(dofs%of(:DISPLACEMENTS, nodes), [DISPLACEMENTS*size(nodes)])
       if (has_friction(options)) then
-         one%friction = friction_t(0*slave%x0, 0*master%x0, 0*one%result%gap, 0*one%result%gap, &
-                                   0*one%result%side)
+         one%friction = friction_state_t(0*slave%x0, 0*master%x0, 0*one%result%gap, 0*one%result%gap, &
+                                         0*one%result%side)
          one%slave_u = 0*slave%x0
          one%master_u = 0*master%x0
       end if
@@ -370,7 +370,7 @@ contains
          do k = 1, forces%triplets
             pair = u([forces%row(k), forces%column(k)])
             if (any(pair == 0)) cycle
-            if (place_of(pattern, pair(1), pair(2)) > 0) cycle
+            if (entry_of(pattern, pair(1), pair(2)) > 0) cycle
             n = n + 1
             pairs(:, n) = pair
          end do
@@ -411,7 +411,7 @@ contains
          do k = 1, forces%triplets
             pair = u([forces%row(k), forces%column(k)])
             if (any(pair == 0)) cycle
-            place = place_of(pattern, pair(1), pair(2))
+            place = entry_of(pattern, pair(1), pair(2))
             values(place) = values(place) + share*forces%value(k)
          end do
       end subroutine add_one

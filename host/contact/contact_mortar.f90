@@ -15,7 +15,7 @@ module contact_mortar
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: overlap_t, point_t, hat_sums_t, find_overlap, integration_point, pair_points, pair_gaps, &
+   public :: overlap_t, mortar_point_t, hat_sums_t, find_overlap, integration_point, pair_points, pair_gaps, &
              add_under_hats, add_unit_forces, penetration, hats, hat_slopes, forces_on_nodes
    public :: POINTS, POSITION, SHARE, LARGEST_POINTS
 
@@ -44,7 +44,7 @@ module contact_mortar
    end type overlap_t
 
    !> An integration point with first derivatives by the local coordinates (d_...).
-   type :: point_t
+   type :: mortar_point_t
       real(wp) :: s = 0.0_wp, m = 0.0_wp          !< Place on the slave and the master edge [-].
       real(wp) :: ns(3) = 0.0_wp, dns(3) = 0.0_wp !< Slave shape functions and slopes [-].
       real(wp) :: nm(3) = 0.0_wp, dnm(3) = 0.0_wp !< Master shape functions and slopes [-].
@@ -62,7 +62,7 @@ module contact_mortar
       real(wp) :: d_area(12) = 0.0_wp
       real(wp) :: d_s(12) = 0.0_wp, d_m(12) = 0.0_wp
       real(wp) :: d_xs(2, 12) = 0.0_wp, d_t(2, 12) = 0.0_wp, d_xm(2, 12) = 0.0_wp
-   end type point_t
+   end type mortar_point_t
 
    !> Integrals of a quantity under the hats of the three nodes of a slave edge, and their slopes by the local
    !> coordinates.
@@ -185,7 +185,7 @@ contains
       integer, intent(in) :: segment
       real(wp), intent(in) :: position, share   !< Place of the point in [-1, 1], and its part of 2.
       logical, intent(in) :: axisymmetric
-      type(point_t), intent(out) :: p
+      type(mortar_point_t), intent(out) :: p
       real(wp), intent(out) :: missed   !< [-]
       type(edge_t) :: slave, master
       real(wp) :: a, b
@@ -250,7 +250,7 @@ contains
       real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
       logical, intent(in) :: at_ends, axisymmetric   !< at_ends: points at the ends of segments too.
-      type(point_t), intent(inout) :: p(LARGEST_POINTS)
+      type(mortar_point_t), intent(inout) :: p(LARGEST_POINTS)
       integer, intent(out) :: n   !< Points that are filled.
       real(wp), intent(out) :: missed   !< [-]
       integer :: segment, k
@@ -271,7 +271,7 @@ contains
    !> (plane: m2), and push(:, A) = int M_A (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
    !> docs/theory/contact.md section 2.3.
    pure subroutine pair_gaps(points, weight, gap, push)
-      type(point_t), intent(in) :: points(:)
+      type(mortar_point_t), intent(in) :: points(:)
       type(hat_sums_t), intent(out) :: weight, gap
       real(wp), intent(out) :: push(12, 3)
       integer :: k
@@ -288,7 +288,7 @@ contains
 
    !> Adds a point to the integrals of a quantity, which is given times the length of the tangent.
    pure subroutine add_under_hats(p, value, slope, sums)
-      type(point_t), intent(in) :: p
+      type(mortar_point_t), intent(in) :: p
       real(wp), intent(in) :: value, slope(12)
       type(hat_sums_t), intent(inout) :: sums
       real(wp) :: m(3), dm(3)
@@ -305,7 +305,7 @@ contains
 
    !> Adds what a point has of the nodal forces of a unit pressure or traction at each slave node.
    pure subroutine add_unit_forces(p, of_point, forces)
-      type(point_t), intent(in) :: p
+      type(mortar_point_t), intent(in) :: p
       real(wp), intent(in) :: of_point(12)   !< As of forces_on_nodes [m].
       real(wp), intent(inout) :: forces(12, 3)
       real(wp) :: m(3)
@@ -320,7 +320,7 @@ contains
    !> Forces on the nodes of a pair, slave first, of a unit force along a direction that pushes the surfaces apart at a
    !> point. docs/theory/contact.md sections 2.3 and 9.
    pure function forces_on_nodes(p, along) result(force)
-      type(point_t), intent(in) :: p
+      type(mortar_point_t), intent(in) :: p
       real(wp), intent(in) :: along(2)   !< As long as the slave's tangent [m].
       real(wp) :: force(12)
       integer :: i
@@ -336,7 +336,7 @@ contains
    pure real(wp) function penetration(x, overlap) result(depth)
       real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
-      type(point_t) :: p
+      type(mortar_point_t) :: p
       real(wp) :: missed
       integer :: segment, k
 

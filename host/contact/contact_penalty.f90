@@ -3,13 +3,14 @@
 !> nodes, energy, nodal forces and the consistent tangent of both surfaces: docs/theory/contact.md sections 2, 3 and 9;
 !> host/CONTACT.md has the limits.
 module contact_penalty
-   use contact_friction, only: friction_t, traction_t, pair_slips, traction_at, tangential_stiffness, touching_share
+   use contact_friction, only: friction_state_t, traction_t, pair_slips, traction_at, tangential_stiffness, &
+                               touching_share
    use contact_geometry, only: contact_geometry_t, check_coordinates, edge_boxes, boxes_around, boxes_meet
-   use contact_mortar, only: overlap_t, point_t, hat_sums_t, find_overlap, pair_points, pair_gaps, penetration, hats, &
-                             POINTS, POSITION, SHARE, LARGEST_POINTS
+   use contact_mortar, only: overlap_t, mortar_point_t, hat_sums_t, find_overlap, pair_points, pair_gaps, penetration, &
+                             hats, POINTS, POSITION, SHARE, LARGEST_POINTS
    use contact_projection, only: edge_t, edge_of, place, tangent
-   use contact_response, only: response_t, nodal_forces_t, nodal_response, pointwise_response, new_forces, make_room, &
-                               add_column
+   use contact_response, only: pair_response_t, nodal_forces_t, nodal_response, pointwise_response, new_forces, &
+                               make_room, add_column
    use contact_types, only: TWO_PI, COMBINED_GAP, contact_options_t, contact_status_t, &
                             CONTACT_OK, CONTACT_NO_PROJECTION
    use kinds, only: wp
@@ -27,7 +28,7 @@ module contact_penalty
       real(wp) :: x(2, 6) = 0.0_wp                   !< Local coordinates [m].
       type(overlap_t) :: overlap
       integer :: n = 0
-      type(point_t) :: points(LARGEST_POINTS)        !< Integration points, the first n.
+      type(mortar_point_t) :: points(LARGEST_POINTS)   !< Integration points, the first n.
       type(hat_sums_t) :: weight, gap, slip          !< Gap and slip times the weight; the slip with friction.
       real(wp) :: push(12, 3) = 0.0_wp, drag(12, 3) = 0.0_wp   !< Forces of a unit pressure and traction at each node.
    end type pair_t
@@ -98,7 +99,7 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
-      type(friction_t), intent(in), optional :: friction   !< Needed where the options have friction.
+      type(friction_state_t), intent(in), optional :: friction   !< Needed where the options have friction.
 
       result%force = 0.0_wp
       result%triplets = 0
@@ -203,7 +204,7 @@ contains
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(out) :: status
-      type(response_t) :: response
+      type(pair_response_t) :: response
       real(wp) :: at_points, at_nodes, energy
       real(wp) :: depth   !< Penetration that no pressure answers, over its edge [-].
       logical :: pressed
@@ -251,11 +252,11 @@ contains
    pure subroutine add_friction(geometry, with_tangent, friction, work, result)
       type(contact_geometry_t), intent(in) :: geometry
       logical, intent(in) :: with_tangent
-      type(friction_t), intent(in) :: friction
+      type(friction_state_t), intent(in) :: friction
       type(contact_workspace_t), intent(inout) :: work
       type(contact_result_t), intent(inout) :: result
       type(traction_t) :: t(geometry%slave_nodes)
-      type(response_t) :: response
+      type(pair_response_t) :: response
       real(wp) :: dx(2, 6)
       integer :: i
 
@@ -293,7 +294,7 @@ contains
    !> not the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
    pure real(wp) function slid_work(options, friction, result) result(total)
       type(contact_options_t), intent(in) :: options
-      type(friction_t), intent(in) :: friction
+      type(friction_state_t), intent(in) :: friction
       type(contact_result_t), intent(in) :: result
       real(wp) :: stiffness, slip, before
       integer :: i
@@ -317,8 +318,8 @@ contains
       real(wp), intent(inout) :: load(:)               !< int M_A p 2 pi r dGamma [kN]
       type(contact_result_t), intent(inout) :: result
       type(contact_status_t), intent(inout) :: status
-      type(response_t) :: response
-      type(point_t) :: ends(LARGEST_POINTS)
+      type(pair_response_t) :: response
+      type(mortar_point_t) :: ends(LARGEST_POINTS)
       real(wp) :: missed
       integer :: n
 
@@ -344,7 +345,7 @@ contains
    !> Forces of a pair, and its stiffness where the tangent is wanted.
    pure subroutine add_response(unknown, response, with_tangent, result)
       integer, intent(in) :: unknown(12)   !< Numbers of the unknowns, as of unknowns_of.
-      type(response_t), intent(in) :: response
+      type(pair_response_t), intent(in) :: response
       logical, intent(in) :: with_tangent
       type(contact_result_t), intent(inout) :: result
       integer :: j

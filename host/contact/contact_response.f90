@@ -4,21 +4,21 @@
 !>   pointwise gaps  p = eps <-g>.
 !> docs/theory/contact.md section 3.
 module contact_response
-   use contact_mortar, only: point_t, hats, hat_slopes, forces_on_nodes
+   use contact_mortar, only: mortar_point_t, hats, hat_slopes, forces_on_nodes
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: response_t, nodal_forces_t, nodal_response, pointwise_response, new_forces, make_room, add_column
+   public :: pair_response_t, nodal_forces_t, nodal_response, pointwise_response, new_forces, make_room, add_column
 
    integer, parameter :: FIRST_ROOM = 1024   !< Triplets to begin with.
 
    !> Forces and stiffness of a pair, in local coordinates.
-   type :: response_t
+   type :: pair_response_t
       real(wp) :: force(12) = 0.0_wp           !< To be added to the internal forces [kN]
       real(wp) :: stiffness(12, 12) = 0.0_wp   !< d force/d coordinates [kN/m]
       real(wp) :: energy = 0.0_wp              !< Pointwise form only [kN m]
       real(wp) :: load(3) = 0.0_wp             !< Pointwise form only: int M_A p 2 pi r dGamma [kN]
-   end type response_t
+   end type pair_response_t
 
    !> Forces over numbered unknowns, and their slopes as entries of a matrix.
    type :: nodal_forces_t
@@ -71,11 +71,11 @@ contains
    !> Forces of a pair and, if wanted, their stiffness, of pressures or, where it slides, tractions of its slave nodes,
    !> which are held. docs/theory/contact.md sections 3 and 9.
    pure subroutine nodal_response(points, slides, values, with_stiffness, response)
-      type(point_t), intent(in) :: points(:)
+      type(mortar_point_t), intent(in) :: points(:)
       logical, intent(in) :: slides
       real(wp), intent(in) :: values(3)   !< [kPa]
       logical, intent(in) :: with_stiffness
-      type(response_t), intent(out) :: response
+      type(pair_response_t), intent(out) :: response
       integer :: k
 
       do k = 1, size(points)
@@ -89,10 +89,10 @@ contains
    !> Forces of a pair and, if wanted, their stiffness, of a penalty on the gap at its points. docs/theory/contact.md
    !> section 3.
    pure subroutine pointwise_response(points, penalty, with_stiffness, response)
-      type(point_t), intent(in) :: points(:)
+      type(mortar_point_t), intent(in) :: points(:)
       real(wp), intent(in) :: penalty       !< [kN/m3]
       logical, intent(in) :: with_stiffness
-      type(response_t), intent(out) :: response
+      type(pair_response_t), intent(out) :: response
       real(wp) :: pressure, gap
       integer :: k
 
@@ -112,11 +112,11 @@ contains
    !> line, so that momentum and its moment are kept exactly. A traction acts along the slave's tangent.
    !> docs/theory/contact.md sections 3 and 9.
    pure subroutine add_work(p, slides, pressure, d_pressure, with_stiffness, response)
-      type(point_t), intent(in) :: p
+      type(mortar_point_t), intent(in) :: p
       logical, intent(in) :: slides   !< It acts along the tangent.
       real(wp), intent(in) :: pressure, d_pressure(12)   !< At the point [kPa], by the local coordinates [kPa/m].
       logical, intent(in) :: with_stiffness
-      type(response_t), intent(inout) :: response
+      type(pair_response_t), intent(inout) :: response
       real(wp) :: nu(2), d_nu(2, 12)   !< Direction, as long as the slave's tangent [m], and its slopes [-].
       real(wp) :: push(12), d_load(12), load
       integer :: i, j, c

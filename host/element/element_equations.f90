@@ -16,7 +16,7 @@ module element_equations
    use tangent_fallback, only: replace_soft_tangents, NO_FALLBACK
    implicit none (type, external)
    private
-   public :: element_t, block_t, points_t, update_block, add_element, element_size, STRAIN_TOO_LARGE
+   public :: element_t, element_block_t, points_t, update_block, add_element, element_size, STRAIN_TOO_LARGE
 
    integer, parameter :: MAX_DOF = 24   !< 12 displacements (node by node), then p_w, then p_c.
    !> Share of the momentum of a step that is a floor of the forces: accelerations are differences of velocities that
@@ -35,14 +35,14 @@ module element_equations
    end type element_t
 
    !> Elements whose points the material updates together.
-   type :: block_t
+   type :: element_block_t
       integer :: first = 1, last = 1        !< Numbers of the elements, of one region.
       integer :: source = BY_MATERIAL       !< Source of the response, see carried_slopes.
       integer :: fallback = NO_FALLBACK     !< Kind of replacement of soft tangents, see tangent_fallback.
       logical :: soft(MOST_POINTS) = .false.   !< Whether the tangent of a point was replaced.
       type(batch_report_t) :: report        !< Report of the material; its code is not 0 where a point failed.
       real(wp) :: seconds = 0.0_wp          !< In the material.
-   end type block_t
+   end type element_block_t
 
    !> Points of a block, element by element. No component has a default: it would be paid for with the whole of the
    !> type.
@@ -73,7 +73,7 @@ contains
       type(model_state_t), intent(inout), target :: new
       logical, intent(in) :: with_tangent
       type(slopes_t), intent(inout) :: slopes   !< Slopes of all points; those of the block are read or written.
-      type(block_t), intent(inout) :: block
+      type(element_block_t), intent(inout) :: block
       type(points_t), intent(inout) :: points
       real(wp), dimension(MOST_POINTS) :: suction, d_suction
       real(wp) :: strain(6, MOST_POINTS)
@@ -246,7 +246,7 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element
       type(scheme_t), intent(in) :: scheme
-      type(block_t), intent(in) :: block
+      type(element_block_t), intent(in) :: block
       type(points_t), intent(in) :: points
       type(model_state_t), intent(in) :: old
       type(model_state_t), intent(inout) :: new

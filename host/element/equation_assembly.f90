@@ -5,7 +5,7 @@ module equation_assembly
    use kinds, only: wp
    use carried_slopes, only: slopes_t, new_slopes, BY_MATERIAL, BY_SLOPES
    use degrees_of_freedom, only: dofs_t
-   use element_equations, only: element_t, block_t, points_t, update_block, add_element, element_size
+   use element_equations, only: element_t, element_block_t, points_t, update_block, add_element, element_size
    use element_sums, only: LAST_U
    use tangent_fallback, only: NO_FALLBACK
    use material_point, only: batch_report_t, MOST_ELEMENTS
@@ -85,8 +85,8 @@ contains
       logical, intent(in) :: with_tangent
       type(assembly_t), intent(inout) :: assembly
       real(wp) :: seconds, t0
-      type(block_t) :: block
-      type(block_t) :: failed   !< The first block that failed.
+      type(element_block_t) :: block
+      type(element_block_t) :: failed   !< The first block that failed.
       type(element_t) :: out
       integer :: e, ne, rates, threads
 
@@ -125,7 +125,7 @@ contains
       !> Elements from .. to, those of one region together.
       subroutine compute_elements(from, to, block, out, seconds, rates)
          integer, intent(in) :: from, to
-         type(block_t), intent(inout) :: block
+         type(element_block_t), intent(inout) :: block
          type(element_t), intent(inout) :: out
          real(wp), intent(inout) :: seconds
          integer, intent(inout) :: rates
@@ -163,11 +163,11 @@ contains
          end do
       end subroutine compute_elements
 
-      !> The first point that failed, of a block that did: its elements once more one by one, so that which is first does
-      !> not depend on the threads.
+      !> Finds the first point of a block that failed: its elements are updated once more one by one, so that which is
+      !> first does not depend on the threads.
       subroutine find_failed_point(failed)
-         type(block_t), intent(in) :: failed
-         type(block_t) :: block
+         type(element_block_t), intent(in) :: failed
+         type(element_block_t) :: block
          type(points_t) :: points
          integer :: e
 

@@ -37,7 +37,7 @@ module porous_balance
       real(wp) :: source(4)
    end type kinematics_t
 
-   !> What a point carries from step to step beside the state variables of its law.
+   !> A point carries this from step to step, and the state variables of its law.
    type :: point_state_t
       real(wp) :: stress(6)      !< Effective [kPa].
       real(wp) :: e, s, s_rate   !< Void ratio, degree of saturation and its rate [1/s].

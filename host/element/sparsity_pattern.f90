@@ -4,7 +4,7 @@
 module sparsity_pattern
    implicit none (type, external)
    private
-   public :: pattern_t, make_pattern, place_of
+   public :: pattern_t, make_pattern, entry_of
 
    type :: pattern_t
       integer :: n = 0
@@ -119,7 +119,7 @@ contains
    end subroutine sort
 
    !> Place of entry (i, j), 0 if the pattern has none. From 1, in pattern%col and in the values of the matrix.
-   pure integer function place_of(pattern, i, j) result(place)
+   pure integer function entry_of(pattern, i, j) result(place)
       type(pattern_t), intent(in) :: pattern
       integer, intent(in) :: i, j
 
@@ -127,5 +127,5 @@ contains
          if (pattern%col(place) == j) return
       end do
       place = 0
-   end function place_of
+   end function entry_of
 end module sparsity_pattern

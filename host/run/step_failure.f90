@@ -12,7 +12,7 @@ module step_failure
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
    use run_state, only: run_t
    use sparse_factors, only: RCOND_SINGULAR
-   use sparsity_pattern, only: place_in => place_of
+   use sparsity_pattern, only: entry_of
    use unknown_fields, only: FIELD_NAMES, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -77,14 +77,14 @@ contains
             node = run%dofs%node(count(run%pattern%row <= i))
             call raise(fault, EXIT_CONVERGENCE, place//'the equations have numbers that are not finite or too '// &
                        'large to be solved; the largest slope is '//short(run%assembly%values(i))//' at '// &
-                       place_of(run%model, node)//': look at the tangent of the material there, and at the loads'// &
+                       location_of(run%model, node)//': look at the tangent of the material there, and at the loads'// &
                        advice(run, time))
          case default
             node = 1
             if (log%worst_unknown > 0) node = run%dofs%node(log%worst_unknown)
             call raise(fault, EXIT_CONVERGENCE, place//'no convergence after '//whole(log%iterations)// &
                        ' iterations'//soft_points(run)//'; '//what_is_left(run)//' (allowed '// &
-                       short(run%stage%tolerance)//'), worst at '//place_of(run%model, node)//advice(run, time))
+                       short(run%stage%tolerance)//'), worst at '//location_of(run%model, node)//advice(run, time))
          end select
       end associate
    end subroutine explain_failure
@@ -169,7 +169,7 @@ contains
 
       text = ''
       associate (dofs => run%dofs, values => run%assembly%values)
-         slope = [(values(place_in(run%pattern, i, i)), i=1, dofs%n)]
+         slope = [(values(entry_of(run%pattern, i, i)), i=1, dofs%n)]
          if (.not. all(ieee_is_finite(slope))) return
          free = .not. run%constraint%fixed .and. dofs%field <= DISPLACEMENTS .and. slope > 0.0_wp
          if (.not. any(free)) return
@@ -177,13 +177,14 @@ contains
          least = minloc(slope, 1, free)
          if (slope(least) >= RCOND_SINGULAR*slope(largest) .and. slope(largest) < sqrt(huge(1.0_wp))) return
          text = ' by rounding: the largest slope of a displacement is '//short(slope(largest))//' at '// &
-                place_of(run%model, dofs%node(largest))//', the least '//short(slope(least))//' at '// &
-                place_of(run%model, dofs%node(least))//'; look for a stiffness that is far too large or far too small.'
+                location_of(run%model, dofs%node(largest))//', the least '//short(slope(least))//' at '// &
+                location_of(run%model, dofs%node(least))//'; look for a stiffness that is far too large or far too '// &
+                'small.'
       end associate
    end function unequal_slopes
 
    !> Where a node is: the plate that it stands for, or an element and the point [m].
-   function place_of(model, node) result(text)
+   function location_of(model, node) result(text)
       type(model_t), intent(in) :: model
       integer, intent(in) :: node
       character(:), allocatable :: text
@@ -199,7 +200,7 @@ contains
                    short(mesh%x(2, node))//') m'
          end if
       end associate
-   end function place_of
+   end function location_of
 
    !> The error that should have fallen below the tolerance, with its present value.
    function what_is_left(run) result(text)

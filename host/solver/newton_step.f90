@@ -19,7 +19,7 @@ module newton_step
    use prescribed_values, only: constraint_t, constrain, choose_sides, loads_of_water
    use sparse_factors, only: analyse, factorise, solve_by_factors, SOLVED, SINGULAR, INACCURATE, NOT_FINITE
    use solution, only: solution_t
-   use sparsity_pattern, only: place_of
+   use sparsity_pattern, only: entry_of
    use springs, only: add_springs, add_linear_forces
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
    implicit none (type, external)
@@ -549,7 +549,7 @@ contains
             force = constraint%mass(i)*(old%a(f, k) + scheme%l_a*(new%a(f, k) - old%a(f, k)))
             assembly%residual(i) = assembly%residual(i) + force
             assembly%scale(i) = assembly%scale(i) + abs(force)
-            place = place_of(pattern, i, i)
+            place = entry_of(pattern, i, i)
             if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
          end do
          call add_springs(constraint%springs, solution%dofs, pattern, scheme, old, new, slopes, assembly)

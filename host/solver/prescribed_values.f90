@@ -5,7 +5,7 @@
 module prescribed_values
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
-   use sparsity_pattern, only: pattern_t, place_of
+   use sparsity_pattern, only: pattern_t, entry_of
    use springs, only: spring_t, linear_forces_t
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
@@ -62,7 +62,7 @@ contains
       do i = 1, dofs%n
          if (.not. constraint%fixed(i)) cycle
          call clear(i, size_of)
-         values(place_of(pattern, i, i)) = size_of
+         values(entry_of(pattern, i, i)) = size_of
          rhs(i) = size_of*(constraint%target(i) - x(dofs%field(i), dofs%node(i)))
       end do
       do k = 1, size(constraint%air)
@@ -70,8 +70,8 @@ contains
          i = dofs%of(AT_P_C, k)
          if (constraint%fixed(i)) cycle
          call clear(i, size_of)
-         values(place_of(pattern, i, i)) = size_of
-         values(place_of(pattern, i, dofs%of(AT_P_W, k))) = size_of
+         values(entry_of(pattern, i, i)) = size_of
+         values(entry_of(pattern, i, dofs%of(AT_P_W, k))) = size_of
          rhs(i) = size_of*(constraint%air_target(k) - x(AT_P_W, k) - x(AT_P_C, k))
       end do
    contains
@@ -80,7 +80,7 @@ contains
          integer, intent(in) :: row
          real(wp), intent(out) :: diagonal
 
-         diagonal = abs(values(place_of(pattern, row, row)))
+         diagonal = abs(values(entry_of(pattern, row, row)))
          if (.not. diagonal > 0.0_wp) diagonal = 1.0_wp
          diagonal = set_exponent(1.0_wp, exponent(diagonal))   ! Steady, for the sake of factors that are used again.
          values(pattern%row(row):pattern%row(row + 1) - 1) = 0.0_wp
@@ -125,7 +125,7 @@ contains
       do i = 1, dofs%n
          if (.not. constraint%limited(i)) cycle
          side = reaction(i) &
-                + abs(values(place_of(pattern, i, i)))*(x(dofs%field(i), dofs%node(i)) - constraint%target(i))
+                + abs(values(entry_of(pattern, i, i)))*(x(dofs%field(i), dofs%node(i)) - constraint%target(i))
          least = LEAST_REACTION*tolerance*magnitudes(i)
          if (constraint%fixed(i) .and. side < -least) then
             if (constraint%releases(i) >= MOST_RELEASES) then

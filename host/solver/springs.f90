@@ -8,7 +8,7 @@ module springs
    use equation_assembly, only: assembly_t
    use generalised_alpha, only: scheme_t
    use porous_domain, only: model_state_t
-   use sparsity_pattern, only: pattern_t, place_of
+   use sparsity_pattern, only: pattern_t, entry_of
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -63,7 +63,7 @@ contains
                assembly%residual(row(k)) = assembly%residual(row(k)) + force
                assembly%scale(row(k)) = assembly%scale(row(k)) + abs(force)
                if (.not. slopes) cycle
-               place = place_of(pattern, row(k), column(k))
+               place = entry_of(pattern, row(k), column(k))
                assembly%values(place) = assembly%values(place) + slope*value(k)
             end do
          end associate
@@ -167,7 +167,7 @@ contains
       if (scheme%has_inertia) slope = slope + one%damping*scheme%c_v
       do a = 1, 2
          do b = 1, 2
-            associate (value => assembly%values(place_of(pattern, ends(a), ends(b))))
+            associate (value => assembly%values(entry_of(pattern, ends(a), ends(b))))
                value = value + signs(a)*signs(b)*slope
             end associate
          end do

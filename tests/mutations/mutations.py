@@ -374,7 +374,7 @@ FIELD = [
     ("a face draws in water", (LIMITS, "if (constraint%fixed(i) .and. side < -least) then", "if (constraint%fixed(i) .and. side < -huge(least)) then")),
     ("a face lets no water out", (LIMITS, "else if (.not. constraint%fixed(i) .and. side > least) then",
                                   "else if (.not. constraint%fixed(i) .and. side > huge(least)) then")),
-    ("a side is chosen by the flow alone", (LIMITS, "+ abs(values(place_of(pattern, i, i)))*(x", "+ 0*abs(values(place_of(pattern, i, i)))*(x")),
+    ("a side is chosen by the flow alone", (LIMITS, "+ abs(values(entry_of(pattern, i, i)))*(x", "+ 0*abs(values(entry_of(pattern, i, i)))*(x")),
     ("friction slides without a limit", (FRICTION, "if (.not. abs(t%value) > limit) return", "if (.not. abs(t%value) > huge(limit)) return")),
     ("friction of a node that was open from the start of the step", (FRICTION, "t%value = stiffness*share*slip", "t%value = stiffness*slip")),
     ("sliding forgets that the pressure changes", (FRICTION, "t%by_gap = -sign(options%friction*options%penalty, t%value)", "t%by_gap = 0.0_wp")),

@@ -3,7 +3,7 @@
 module contact_scenes
    use, intrinsic :: iso_fortran_env, only: int64
    use contact_geometry, only: contact_geometry_t, contact_prepare
-   use contact_friction, only: friction_t
+   use contact_friction, only: friction_state_t
    use contact_penalty, only: contact_workspace_t, contact_result_t, new_workspace, new_result, contact_evaluate
    use contact_types, only: TWO_PI, NODAL_GAP, POINTWISE_GAP, COMBINED_GAP, contact_options_t, contact_status_t
    use kinds, only: wp
@@ -33,7 +33,7 @@ module contact_scenes
       type(contact_geometry_t) :: geometry
       type(contact_workspace_t) :: work
       type(contact_result_t) :: result
-      type(friction_t), allocatable :: friction           !< Where it has friction.
+      type(friction_state_t), allocatable :: friction     !< Where it has friction.
       real(wp), allocatable :: slave_0(:, :), master_0(:, :)   !< Coordinates at the start of its step.
    end type kernel_t
 
