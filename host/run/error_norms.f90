@@ -15,13 +15,13 @@ module error_norms
    use kinds, only: wp
    use generalised_alpha, only: scheme_t
    use porous_domain, only: model_state_t, OUTFLOWS
+   use step_control, only: LARGEST_FACTOR
    use unknown_fields, only: FIELDS, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: rate_memory_t, new_memory, exchange_memory, shift_rates, restore_rates, local_errors, remember, &
              constant_of_accelerations, constant_of_rates
 
-   real(wp), parameter :: LONGEST = 2.0_wp   !< Times the last step: no rate is carried over a longer one.
    real(wp), parameter :: BENT = 1.0_wp/12   !< Mean deviation of a bent path from the straight step, of dt**2 x''.
 
    !> Rates of a state: of the unknowns, of saturation, and the flows out of the ground, which move as rates do.
@@ -79,8 +79,8 @@ contains
    end function constant_of_rates
 
    !> Moves the rates of the present state to where a step of another length expects them. docs/theory/host.md section
-   !> 4.5. Rates stay in static steps and where none are known from before; in dynamic steps those of the displacements
-   !> stay.
+   !> 4.5. No rate is carried over a longer step than the control lets one grow to. Rates stay in static steps and where
+   !> none are known from before; in dynamic steps those of the displacements stay.
    pure subroutine shift_rates(scheme, memory, state)
       type(scheme_t), intent(in) :: scheme   !< Scheme of the step to come.
       type(rate_memory_t), intent(inout) :: memory
@@ -93,7 +93,7 @@ contains
       if (.not. scheme%has_rates .or. .not. memory%known) return
       associate (base => memory%base, before => memory%before)
          first = merge(DISPLACEMENTS + 1, 1, scheme%has_inertia)
-         share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LONGEST*memory%dt) - memory%dt)/memory%dt
+         share = (scheme%l_f - scheme%l_p)*(min(scheme%dt, LARGEST_FACTOR*memory%dt) - memory%dt)/memory%dt
          state%v(first:, :) = base%v(first:, :) + share*(base%v(first:, :) - before%v(first:, :))
          state%s_rate = base%s + share*(base%s - before%s)
          state%outflow = base%outflow + share*(base%outflow - before%outflow)
@@ -138,7 +138,7 @@ contains
          off = scheme%l_f - scheme%l_p
          error(first:, :) = constant_of_rates(scheme)*dt**3*((new%v(first:, :) - old%v(first:, :))/dt &
                             - (base(first:, :) - before(first:, :))/memory%dt) &
-                            /(0.5_wp*(dt + memory%dt) + off*(min(dt, LONGEST*memory%dt) - memory%dt))
+                            /(0.5_wp*(dt + memory%dt) + off*(min(dt, LARGEST_FACTOR*memory%dt) - memory%dt))
       end associate
    end subroutine local_errors
 
