@@ -246,8 +246,7 @@ contains
       real(wp), intent(in) :: factor   !< [-]
       real(wp), allocatable :: force(:)
 
-      force = factor*load%value*load%shape
-      if (allocated(load%rise)) force = force + factor*load%value_slope*load%rise
+      force = factor*load%vector
    end function force_of
 
    !> Loads on the coordinates of a plate, its weight among them: first the force upwards [kN]. docs/theory/host.md

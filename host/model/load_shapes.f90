@@ -1,17 +1,17 @@
 ! SPDX-License-Identifier: MIT
-!> Load vectors of a unit of every load, and the nodes that move together: made once, from the mesh.
+!> Vectors of the loads at a factor of 1, and the nodes that move together: made once, from the mesh.
 module load_shapes
    use acting_places, only: facing_edges
    use degrees_of_freedom, only: tie_pairs
    use given_pressures, only: edges_with_flow
    use kinds, only: wp
-   use model_types, only: model_t, load_t
+   use model_types, only: model_t, load_t, value_at
    use porous_domain, only: edge_point_t, points_of_edge, PER_EDGE
    use scene_parts, only: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: shape_loads, ties_of
+   public :: integrate_loads, ties_of
 contains
    !> Nodes that plates make move together: those of the boundaries that share their u_z. And those of &tie. (FIELDS,
    !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
@@ -32,35 +32,26 @@ contains
       end do
    end function ties_of
 
-   !> Vectors of unit loads. (unknowns) of every load, per unit of its value: docs/theory/host.md section 7.2.
-   subroutine shape_loads(model)
+   !> Vectors of all loads. docs/theory/host.md section 7.2.
+   subroutine integrate_loads(model)
       type(model_t), intent(inout) :: model
-      real(wp) :: shape(model%dofs%n)
       integer :: i
 
       do i = 1, size(model%loads)
-         associate (load => model%loads(i))
-            call shape_load(model, load, 1.0_wp, 0.0_wp, shape)
-            load%shape = shape
-            if (allocated(load%rise)) deallocate (load%rise)
-            if (.not. abs(load%value_slope) > 0.0_wp) cycle
-            call shape_load(model, load, -load%datum, 1.0_wp, shape)
-            load%rise = shape
-         end associate
+         model%loads(i)%vector = vector_of(model, model%loads(i))
       end do
-   end subroutine shape_loads
+   end subroutine integrate_loads
 
-   !> Vector of a load of base + slope z.
-   subroutine shape_load(model, load, base, slope, shape)
+   !> Vector of a load at a factor of 1. (unknowns) [kN, m3/s]
+   function vector_of(model, load) result(vector)
       type(model_t), intent(in) :: model
       type(load_t), intent(in) :: load
-      real(wp), intent(in) :: base, slope
-      real(wp), intent(out) :: shape(:)
+      real(wp) :: vector(model%dofs%n)
       logical :: acts(size(model%domain%mesh%groups(load%group)%edges, 2))
       integer, allocatable :: edges(:, :)
       integer :: e, k, f
 
-      shape = 0.0_wp
+      vector = 0.0_wp
       associate (group => model%domain%mesh%groups(load%group))
          if (load%kind < LOAD_FORCE_R) then
             acts = .true.
@@ -68,63 +59,62 @@ contains
             edges = facing_edges(model, load%group, load%in_stage)
             do e = 1, size(edges, 2)
                if (.not. acts(e)) cycle
-               call add_edge(model, edges(:, e), load%kind, base, slope, shape)
+               call add_edge(model, edges(:, e), load, vector)
             end do
          else
             f = merge(AT_U_R, AT_U_Z, load%kind == LOAD_FORCE_R)
             do k = 1, size(group%nodes)
                associate (at => model%dofs%of(f, group%nodes(k)))
-                  if (at > 0) shape(at) = shape(at) + (base + slope*model%domain%mesh%x(2, group%nodes(k)))
+                  if (at > 0) vector(at) = vector(at) + value_at(load, model%domain%mesh%x(2, group%nodes(k)))
                end associate
             end do
          end if
       end associate
-   end subroutine shape_load
+   end function vector_of
 
-   !> A load of base + slope z on an edge; its body lies on the left, so that the outward normal is the tangent turned
-   !> right.
-   subroutine add_edge(model, edge, kind, base, slope, shape)
+   !> Adds a load on an edge; its body lies on the left, so that the outward normal is the tangent turned right.
+   subroutine add_edge(model, edge, load, vector)
       type(model_t), intent(in) :: model
-      integer, intent(in) :: edge(3), kind
-      real(wp), intent(in) :: base, slope
-      real(wp), intent(inout) :: shape(:)
+      integer, intent(in) :: edge(3)
+      type(load_t), intent(in) :: load
+      real(wp), intent(inout) :: vector(:)
       type(edge_point_t) :: points(PER_EDGE)
-      real(wp) :: load
+      real(wp) :: value
       integer :: g, i
 
       points = points_of_edge(model%domain, edge)
       do g = 1, PER_EDGE
          associate (n => points(g)%n, m => points(g)%m, tangent => points(g)%tangent, area => points(g)%area, &
                     ring => points(g)%ring)
-            load = base + slope*points(g)%x(2)
+            value = value_at(load, points(g)%x(2))
             do i = 1, 3
-               select case (kind)
+               select case (load%kind)
                case (LOAD_PRESSURE)
-                  call add(AT_U_R, i, -n(i)*tangent(2)*ring*load)
-                  call add(AT_U_Z, i, n(i)*tangent(1)*ring*load)
+                  call add(AT_U_R, i, -n(i)*tangent(2)*ring*value)
+                  call add(AT_U_Z, i, n(i)*tangent(1)*ring*value)
                case (LOAD_SHEAR_R)
-                  call add(AT_U_R, i, n(i)*area*load)
+                  call add(AT_U_R, i, n(i)*area*value)
                case (LOAD_SHEAR_Z)
-                  call add(AT_U_Z, i, n(i)*area*load)
+                  call add(AT_U_Z, i, n(i)*area*value)
                case (LOAD_WATER)
-                  call add(AT_P_W, i, m(i)*area*load)
+                  call add(AT_P_W, i, m(i)*area*value)
                case (LOAD_RAIN)
                   ! It falls vertically, on what looks upwards.
-                  call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*ring*load)
+                  call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*ring*value)
                case (LOAD_AIR)
-                  call add(AT_P_W, i, m(i)*area*load)
-                  call add(AT_P_C, i, m(i)*area*load)
+                  call add(AT_P_W, i, m(i)*area*value)
+                  call add(AT_P_C, i, m(i)*area*value)
                end select
             end do
          end associate
       end do
    contains
-      subroutine add(field, i, value)
+      subroutine add(field, i, force)
          integer, intent(in) :: field, i
-         real(wp), intent(in) :: value
+         real(wp), intent(in) :: force   !< [kN], or inflow [m3/s].
 
          associate (place => model%dofs%of(field, edge(i)))
-            if (place > 0) shape(place) = shape(place) + value
+            if (place > 0) vector(place) = vector(place) + force
          end associate
       end subroutine add
    end subroutine add_edge

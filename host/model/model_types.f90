@@ -71,8 +71,7 @@ module model_types
 
    type, extends(acting_t) :: load_t
       integer :: kind = 0                            !< LOAD_...
-      real(wp), allocatable :: shape(:)              !< Load vector of a unit value.
-      real(wp), allocatable :: rise(:)               !< Load vector of the value z - datum, where it changes with z.
+      real(wp), allocatable :: vector(:)             !< (unknowns) At a factor of 1 [kN, m3/s].
    end type load_t
 
    !> A coordinate of a rigid plate: its unknown, what acts on it, and its names in tables.

@@ -10,7 +10,7 @@ module model_builder
    use free_bodies, only: check_bodies
    use given_pressures, only: add_centers, check_places
    use key_table, only: key_table_t
-   use load_shapes, only: shape_loads, ties_of
+   use load_shapes, only: integrate_loads, ties_of
    use material_registry, only: is_law
    use model_types, only: model_t
    use namelists, only: group_t
@@ -66,7 +66,7 @@ contains
       if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
-      call shape_loads(model)
+      call integrate_loads(model)
    contains
       subroutine build(name)
          character(*), intent(in) :: name
