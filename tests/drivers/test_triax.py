@@ -181,7 +181,7 @@ def test_p_below_zero_is_told_times():
 
 
 def test_a_case_outside_the_tests_of_its_material_is_told():
-    # The ranges of a fitted material are data of its file: e 0.693 to 1.005, p' 12 to 859 kPa.
+    # The ranges of a fitted material are data of its file: e 0.693 to 1.007, p' 12 to 859 kPa.
     for name, p, e, words in (("inside", 100, 0.8, ()),
                               ("dense", 100, 0.65, ("void ratio is 0.65, in its tests 0.693",)),
                               ("deep", 900, 0.8, ("mean effective stress is 900 kPa, in its tests 12 to 859",)),

@@ -206,7 +206,7 @@ def turned(rule, tolerance, eta, count=LOOPS):
 
 
 def strain_circle(rule, tolerance, radius, one, two, marks=(1, 10, 100)):
-    """q [kPa] after closed loops of strain from a sheared state of 122 kPa."""
+    """q [kPa] after closed loops of strain from a sheared state of 125 kPa."""
     point = Point(STIFF, rule, tolerance, isotropic(100.0), 0.75)
     point.go([axial_strain(0.004)])
     points = [radius * (math.cos(a) * one + math.sin(a) * two) for a in np.linspace(0, 2 * math.pi, 17)]
