@@ -4,7 +4,7 @@
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
+   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge, probe_copy
    use faults, only: fault_t
    use run_observer, only: observer_t, STAGE_BEGINS, STEP
    use run_state, only: run_t
@@ -33,7 +33,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(contact_alarm_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       if (size(run%model%contacts) == 0) return
@@ -44,12 +44,12 @@ contains
    !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
    !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
    subroutine look_at_overlaps(run)
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
+      type(contacts_t) :: contacts
+      logical :: good
 
-      select type (contacts => run%system%contacts)
-      type is (contacts_t)
-         if (contacts%probe(run%state%x)) call warn_of_overlaps(run, contacts%interfaces)
-      end select
+      call probe_copy(run%system%contacts, run%state%x, contacts, good)
+      if (good) call warn_of_overlaps(run, contacts%interfaces)
    end subroutine look_at_overlaps
 
    subroutine warn_of_overlaps(run, interfaces)
@@ -98,7 +98,7 @@ contains
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
    subroutine look_at_penetration(self, run)
       class(contact_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       integer :: i
 
       if (.not. allocated(self%told)) allocate (self%told(size(run%model%contacts)), source=.false.)

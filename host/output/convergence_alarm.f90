@@ -22,7 +22,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(convergence_alarm_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       if (event /= STEP) return

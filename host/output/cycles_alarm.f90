@@ -56,7 +56,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       if (event == BEGINS) call begin_to_count(self, run)
@@ -67,7 +67,7 @@ contains
    !> Makes room for the histories and the displacements, which start where the run does.
    subroutine begin_to_count(self, run)
       class(cycles_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       integer :: i
 
       associate (nodes => run%domain%mesh%t6, of => run%domain%region_of)
@@ -103,7 +103,7 @@ contains
    !> has many, once, on standard error.
    subroutine count_turns(self, run)
       class(cycles_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       real(wp) :: factor, least
       integer :: i, n, at
 

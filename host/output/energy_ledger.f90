@@ -13,6 +13,7 @@ module energy_ledger
    use permeability_laws, only: relative_t, relative_permeability
    use generalised_alpha, only: scheme_t
    use run_state, only: run_t
+   use step_balance, only: mean_outflow
    implicit none (type, external)
    private
    public :: ledger_t, exchange_ledger, book_step, book_creation, allowed_creation, kinetic_energy, &
@@ -51,9 +52,8 @@ contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
    !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
-   subroutine book_step(contact_force, run, damping_stress, ledger)
-      real(wp), intent(in) :: contact_force(:)   !< Mean forces of contacts and terms over the step [kN]. (unknowns)
-      type(run_t), intent(inout) :: run          !< After a step; the flows out of run%next are set.
+   subroutine book_step(run, damping_stress, ledger)
+      type(run_t), intent(in) :: run   !< After a step.
       !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
       real(wp), allocatable, intent(inout) :: damping_stress(:, :)
       type(ledger_t), intent(inout) :: ledger
@@ -83,7 +83,7 @@ contains
          ledger%pores = ledger%pores + work%pores
          ledger%gravity = ledger%gravity + work%gravity
          ledger%damping = ledger%damping + work%damping
-         call book_forces(run, contact_force, change, ledger)
+         call book_forces(run, change, ledger)
          call book_outflow(run, ledger)
          if (allocated(damping_stress)) call follow_damping(run, damping_stress)
       end associate
@@ -141,9 +141,8 @@ contains
    end function moved_by_supports
 
    !> Forces on nodes: loads, contacts, and the inertia of bodies that supports move.
-   subroutine book_forces(run, contact_force, change, ledger)
+   subroutine book_forces(run, change, ledger)
       type(run_t), intent(in) :: run
-      real(wp), intent(in) :: contact_force(:)
       real(wp), intent(in) :: change(:, :)
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: load
@@ -151,7 +150,7 @@ contains
 
       do i = 1, run%dofs%n
          associate (f => run%dofs%field(i), k => run%dofs%node(i), constraint => run%constraint, &
-                    scheme => run%scheme, touch => contact_force(i))
+                    scheme => run%scheme, touch => run%mean_force(i))
             if (f > DISPLACEMENTS) cycle
             load = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i)) - constraint%offset(i)
             ledger%loads = ledger%loads + load*change(f, k)
@@ -164,31 +163,16 @@ contains
       end do
    end subroutine book_forces
 
-   !> Flow out through prescribed pressures and past limits, less the rain: what runs off never entered. Its mean over
-   !> the step is that of the rate of what is stored, so that what has left is what is missing inside, whatever the
-   !> steps. docs/theory/host.md section 9.
+   !> Flow out through prescribed pressures and past limits, less the rain. docs/theory/host.md section 9.
    subroutine book_outflow(run, ledger)
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
-      real(wp) :: flow(OUTFLOWS), mean(OUTFLOWS)
-      integer :: i
+      real(wp) :: left(OUTFLOWS)
 
-      associate (dofs => run%dofs, scheme => run%scheme, constraint => run%constraint, &
-                 reaction => run%system%reaction, before => run%state%outflow, after => run%next%outflow)
-         after = 0.0_wp
-         if (.not. scheme%has_rates) return
-         flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
-         do i = 1, dofs%n
-            if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
-            if (dofs%field(i) /= AT_P_C) cycle
-            if (constraint%fixed(i)) flow(2) = flow(2) - reaction(i)
-            if (constraint%air(dofs%node(i))) flow = flow - reaction(i)
-         end do
-         after = before + (flow - before)/scheme%l_p
-         mean = before + scheme%gamma_1*(after - before)
-         ledger%outflow = ledger%outflow + scheme%dt*mean(1)
-         ledger%outflow_air = ledger%outflow_air + scheme%dt*mean(2)
-      end associate
+      if (.not. run%scheme%has_rates) return
+      left = run%scheme%dt*mean_outflow(run)
+      ledger%outflow = ledger%outflow + left(1)
+      ledger%outflow_air = ledger%outflow_air + left(2)
    end subroutine book_outflow
 
    !> Work that moves an element as a step does, inertia included [kJ].

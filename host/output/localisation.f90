@@ -25,6 +25,7 @@ module localisation
    type, extends(observer_t) :: localisation_observer_t
       real(wp) :: shear = 0.0_wp          !< Positive work of the points on deviators [kJ].
       real(wp) :: localised = 0.0_wp      !< Part of it by points whose tangent had lost ellipticity [kJ].
+      real(wp) :: share = 0.0_wp          !< Part over whole, after a step [-].
       real(wp), allocatable :: work(:)    !< (points) Such work of every point [kJ].
       real(wp) :: since = 0.0_wp          !< When the share first was above TOLD_SHARE [s].
       logical :: is_above = .false.       !< The share has been above it.
@@ -54,7 +55,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(localisation_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       select case (event)
@@ -63,7 +64,7 @@ contains
       case (STEP)
          call book(self, run)
       case (STAGE_ENDS)
-         if (.not. (run%news%complete .and. run%stage%zero_displacements)) return
+         if (.not. (run%complete .and. run%stage%zero_displacements)) return
          self%shear = 0.0_wp
          self%localised = 0.0_wp
          self%work = 0.0_wp
@@ -72,11 +73,11 @@ contains
       end select
    end subroutine hear
 
-   !> Books a step, gives its share to the ledger, and tells a share above TOLD_SHARE, once, on standard error. Points
+   !> Books a step, and tells a share above TOLD_SHARE, once, on standard error. Points
    !> are looked at in parallel, and added up in their order.
    subroutine book(self, run)
       class(localisation_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       real(wp), allocatable :: work(:)
       logical, allocatable :: lost(:)
       real(wp) :: least
@@ -100,8 +101,8 @@ contains
       worst = maxloc(self%work, dim=1)
       if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
                                               self%normal)
-      run%news%localised = self%localised/max(self%shear, tiny(1.0_wp))
-      if (run%news%localised > TOLD_SHARE .and. .not. self%is_above) then
+      self%share = self%localised/max(self%shear, tiny(1.0_wp))
+      if (self%share > TOLD_SHARE .and. .not. self%is_above) then
          self%is_above = .true.
          self%since = run%next%time
       end if
@@ -146,7 +147,7 @@ contains
       associate (n => run%domain%rule)
          x = run%domain%gauss(mod(worst - 1, n) + 1, (worst - 1)/n + 1)%x
       end associate
-      call print_warning(now_in(run)//'shear localises. '//short(0.1_wp*nint(1000*run%news%localised))// &
+      call print_warning(now_in(run)//'shear localises. '//short(0.1_wp*nint(1000*self%share))// &
          ' % of the shear work so far is done where the tangent of the soil has lost ellipticity (column localised '// &
          'of ledger.csv; above '//short(100*TOLD_SHARE)//' % since '//short(self%since)//' s), most of it at ('// &
          short(x(1))//', '//short(x(2))//') m in a band with its normal at '//whole(nint(self%normal*180/PI))// &

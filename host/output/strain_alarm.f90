@@ -26,12 +26,12 @@ contains
    subroutine hear(self, event, run, fault)
       class(strain_alarm_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
       real(wp) :: strain, largest, at(2)
       integer :: e, g, first
 
-      if (event /= STEP .or. self%told .or. .not. run%news%last) return
+      if (event /= STEP .or. self%told .or. .not. run%last) return
       largest = LARGE
       associate (domain => run%domain, new => run%next, model => run%model)
          first = 1 + findloc(model%stages(:run%at%stage - 1)%zero_displacements, .true., 1, back=.true.)

@@ -10,6 +10,7 @@ module water_balance
    use porous_domain, only: pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use run_observer, only: observer_t, STEP, STAGE_ENDS
    use run_state, only: run_t
+   use step_balance, only: mean_outflow
    use texts, only: short
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use warnings, only: print_warning
@@ -31,7 +32,6 @@ module water_balance
       real(wp) :: moved = 0.0_wp      !< Water through boundaries, in and out [m3].
    end type water_t
 
-   !> It stands behind the ledger, which sets the flows out.
    type, extends(observer_t) :: water_alarm_t
       type(water_t) :: water
    contains
@@ -57,7 +57,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(water_alarm_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       if (event == STEP) call book(self, run)
@@ -67,7 +67,7 @@ contains
    !> Books the water of a step.
    subroutine book(self, run)
       class(water_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       integer :: e
 
       if (.not. run%scheme%has_rates .or. .not. run%domain%with_w) return
@@ -83,7 +83,7 @@ contains
    !> saturation out.
    subroutine look_at_missing(self, run)
       class(water_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       character(:), allocatable :: of_what
       real(wp) :: missing
 
@@ -155,7 +155,7 @@ contains
             water%received = water%received + scheme%dt*inflow
             water%moved = water%moved + scheme%dt*(abs(inflow) + abs(outflow))
          end do
-         mean = run%state%outflow + scheme%gamma_1*(run%next%outflow - run%state%outflow)
+         mean = mean_outflow(run)
          water%left = water%left + scheme%dt*(mean(1) - mean(2))
          water%received = water%received &
             - water_through_dashpots(constraint%linear, run%dofs, constraint%air, run%next%x - run%state%x)
