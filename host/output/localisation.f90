@@ -30,13 +30,12 @@ module localisation
       real(wp) :: since = 0.0_wp          !< When the share first was above TOLD_SHARE [s].
       logical :: is_above = .false.       !< The share has been above it.
       real(wp) :: normal = 0.0_wp         !< Angle of the normal where most of that work is done, from r towards z.
-      logical :: told = .false.
    contains
       procedure :: exchange
       procedure :: hear
    end type localisation_observer_t
 contains
-   !> Exchanges what is booked; a run that is taken up tells it again.
+   !> Exchanges what is booked.
    subroutine exchange(self, archive)
       class(localisation_observer_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
@@ -69,7 +68,6 @@ contains
          self%localised = 0.0_wp
          self%work = 0.0_wp
          self%is_above = .false.
-         self%told = .false.
       end select
    end subroutine hear
 
@@ -102,12 +100,9 @@ contains
       if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
                                               self%normal)
       self%share = self%localised/max(self%shear, tiny(1.0_wp))
-      if (self%share > TOLD_SHARE .and. .not. self%is_above) then
-         self%is_above = .true.
-         self%since = run%next%time
-      end if
-      if (self%told .or. .not. self%is_above) return
-      self%told = .true.
+      if (self%is_above .or. self%share <= TOLD_SHARE) return
+      self%is_above = .true.
+      self%since = run%next%time
       call tell(self, run, worst)
    end subroutine book
 

@@ -7,6 +7,7 @@ module checkpoints
    use run_state, only: run_t, exchange_run
    use run_observer, only: observers_t
    use wall_clock, only: clock, add_elapsed
+   use warnings, only: exchange_warnings
    use interrupts, only: interrupted, EXIT_INTERRUPTED
    use kinds, only: wp
    use model_types, only: model_t
@@ -17,7 +18,7 @@ module checkpoints
    public :: keep_run, read_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '21', &
+   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '22', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
@@ -68,6 +69,7 @@ contains
       call exchange_scene(folder, run%model, archive, fault)
       call exchange_run(run, archive)
       call observers%exchange(archive)
+      call exchange_warnings(archive)
       call close_archive(archive, good)
       if (.not. good) call raise(fault, EXIT_OUTPUT, folder//'/'//CHECKPOINT//' cannot be written; is the '// &
                                  'disk full? The one before is untouched: make room and use --restart.')
@@ -88,6 +90,7 @@ contains
       call exchange_scene(path, run%model, archive, fault)
       if (fault%code == 0) call exchange_run(run, archive)
       if (fault%code == 0) call observers%exchange(archive)
+      if (fault%code == 0) call exchange_warnings(archive)
       call close_archive(archive, good)
       if (fault%code == 0 .and. .not. good) call raise(fault, EXIT_RESTART, path//DAMAGED)
    end subroutine read_checkpoint
