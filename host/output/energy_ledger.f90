@@ -8,8 +8,8 @@ module energy_ledger
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use springs, only: work_of_linear_forces
-   use porous_domain, only: region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
-                            gravity_on, COUPLED, OUTFLOWS
+   use porous_domain, only: region_t, model_state_t, means_t, means_over, strain_of, mixture_density, pressures_at, &
+                            is_present, gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use generalised_alpha, only: scheme_t
    use run_state, only: run_t
@@ -41,6 +41,9 @@ module energy_ledger
       !> Most that residuals within Newton's tolerance can have done: in all steps before a work exceeds it, then in one
       !> step [kJ].
       real(wp) :: tolerated = 0.0_wp
+      !> (4, points) Stress of the damping in proportion to the stiffness at the end of the last step [kPa]; not
+      !> allocated: no region has such.
+      real(wp), allocatable :: damping_stress(:, :)
    end type ledger_t
 
    !> Works of the mean forces of a step [kJ].
@@ -52,10 +55,8 @@ contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
    !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
-   subroutine book_step(run, damping_stress, ledger)
+   subroutine book_step(run, ledger)
       type(run_t), intent(in) :: run   !< After a step.
-      !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
-      real(wp), allocatable, intent(inout) :: damping_stress(:, :)
       type(ledger_t), intent(inout) :: ledger
       type(work_t) :: work
       real(wp), allocatable :: change(:, :), held(:, :)
@@ -69,8 +70,8 @@ contains
          do e = 1, size(domain%mesh%t6, 2)
             if (.not. is_present(new, e)) cycle
             associate (node => domain%mesh%t6(:, e))
-               call add_work_of_element(e, run, damping_stress, change(:, node), work)
-               ledger%supports = ledger%supports + work_to_move_element(e, run, damping_stress, held(:, node))
+               call add_work_of_element(e, run, ledger%damping_stress, change(:, node), work)
+               ledger%supports = ledger%supports + work_to_move_element(e, run, ledger%damping_stress, held(:, node))
                if (.not. domain%with_w .or. .not. run%scheme%has_rates) cycle
                if (domain%regions(domain%region_of(e))%drainage == COUPLED) call book_seepage(e, run, ledger)
             end associate
@@ -85,7 +86,7 @@ contains
          ledger%damping = ledger%damping + work%damping
          call book_forces(run, change, ledger)
          call book_outflow(run, ledger)
-         if (allocated(damping_stress)) call follow_damping(run, damping_stress)
+         if (allocated(ledger%damping_stress)) call follow_damping(run, ledger%damping_stress)
       end associate
    end subroutine book_step
 
@@ -196,7 +197,8 @@ contains
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
-      real(wp) :: damping(4), strain(4), p(2), middle(2, 6), s, n, rho, gravity, push(DISPLACEMENTS)
+      type(means_t) :: mean
+      real(wp) :: damping(4), strain(4), p(2), middle(2, 6), rho, gravity, push(DISPLACEMENTS)
       real(wp) :: dv(DISPLACEMENTS, 6), v(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
@@ -212,13 +214,11 @@ contains
             at = (e - 1)*domain%rule + g
             associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
                strain = strain_of(gp, du)
-               work%skeleton = work%skeleton &
-                  + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
-               s = 0.5_wp*(old%s(at) + new%s(at))
-               n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
+               mean = means_over(old, new, at)
+               work%skeleton = work%skeleton + gp%weight*dot_product(mean%stress, strain)
                p = pressures_at(domain, e, g, middle)
-               work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
-               rho = mixture_density(domain, region, n, s)
+               work%pores = work%pores - gp%weight*(p(1) + (1 - mean%s)*p(2))*sum(strain(1:3))
+               rho = mixture_density(domain, region, mean%n, mean%s)
                work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
                if (allocated(region%against_rate) .and. scheme%has_rates) work%damping = work%damping &
                   + gp%weight*dot_product(matmul(region%against_rate, strain_of(gp, v)), strain)
@@ -243,7 +243,8 @@ contains
       type(ledger_t), intent(inout) :: ledger
       type(relative_t) :: rel
       real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity
-      integer :: g, p, n_p
+      type(means_t) :: mean
+      integer :: g, n_p
 
       gravity = 0.5_wp*(gravity_on(run%state, e) + gravity_on(run%next, e))
       n_p = run%domain%n_p
@@ -251,10 +252,10 @@ contains
          middle = 0.5_wp*(run%state%x(AT_P_W:AT_P_C, node) + run%next%x(AT_P_W:AT_P_C, node))
       end associate
       do g = 1, run%domain%rule
-         p = (e - 1)*run%domain%rule + g
+         mean = means_over(run%state, run%next, (e - 1)*run%domain%rule + g)
          associate (gp => run%domain%gauss(g, e), f => run%domain%fluids, &
                     law => run%domain%permeabilities(run%domain%regions(run%domain%region_of(e))%permeability))
-            rel = relative_permeability(law, 0.5_wp*(run%state%s(p) + run%next%s(p)))
+            rel = relative_permeability(law, mean%s)
             kappa = law%intrinsic*rel%w/f%eta_w
             drive = matmul(middle(AT_P_W, :n_p), gp%dm(:n_p, :)) + [0.0_wp, f%rho_w*gravity]
             ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
@@ -364,6 +365,8 @@ contains
                             'steps in a row with more created energy than the stage allows')
       call archive%exchange('tolerated', ledger%tolerated, 'kJ', &
                             'most that residuals within the tolerance can have done')
+      call archive%exchange_allocatable('damping_stress', ledger%damping_stress, 'kPa', &
+                                        'stress of the damping in proportion to the stiffness')
       call archive%leave('ledger')
    end subroutine exchange_ledger
 end module energy_ledger

@@ -37,21 +37,17 @@ module ledger_observer
       type(csv_t) :: contact   !< It is open if the scene has contacts or plates.
       type(localisation_observer_t) :: localisation   !< Hears what the ledger hears; its share is a column.
       type(ledger_t) :: ledger
-      !> (4, points) Stress of the damping in proportion to the stiffness; allocated where a region has it [kPa].
-      real(wp), allocatable :: damping_stress(:, :)
    contains
       procedure :: exchange
       procedure :: hear
    end type ledger_observer_t
 contains
-   !> Exchanges ledger, stress of the damping, localisation and the lengths of the tables.
+   !> Exchanges ledger, localisation and the lengths of the tables.
    subroutine exchange(self, archive)
       class(ledger_observer_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
 
       call exchange_ledger(self%ledger, archive)
-      call archive%exchange_allocatable('damping_stress', self%damping_stress, 'kPa', &
-                                        'stress of the damping in proportion to the stiffness')
       call self%localisation%exchange(archive)
       call exchange_table('ledger', self%table, archive)
       call exchange_table('contact', self%contact, archive)
@@ -72,7 +68,7 @@ contains
          call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
       case (BEGINS)
          if (run%steps == 0 .and. any(run%domain%regions%stiffness_damping > 0.0_wp)) &
-            allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
+            allocate (self%ledger%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
          if (.not. allocated(self%folder)) return
          call open_table(self%folder//'/ledger.csv', COLUMNS, self%table, fault)
          if (size(run%model%contacts) + size(run%model%plates) > 0) &
@@ -102,7 +98,7 @@ contains
             ! The velocities of a stage without inertia are no motion: each stage begins its own account.
             if (run%steps > 1) ledger%open_0 = imbalance(ledger)
          end if
-         call book_step(run, self%damping_stress, ledger)
+         call book_step(run, ledger)
          call book_creation(run, ledger)
          if (.not. stage%has_inertia) return
          ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, &
@@ -145,7 +141,7 @@ contains
       type(run_t), intent(in) :: run
 
       associate (stage => run%stage, ledger => self%ledger)
-         if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
+         if (stage%zero_displacements .and. allocated(ledger%damping_stress)) ledger%damping_stress = 0.0_wp
          if (.not. stage%has_inertia .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
          if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
          call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &

@@ -7,7 +7,7 @@ module localisation
    use archive, only: archive_t
    use faults, only: fault_t
    use kinds, only: wp, PI
-   use porous_domain, only: is_present, strain_of
+   use porous_domain, only: means_t, means_over, is_present, strain_of
    use run_observer, only: observer_t, BEGINS, STEP, STAGE_ENDS
    use run_state, only: run_t, now_in
    use texts, only: short, whole
@@ -112,6 +112,7 @@ contains
       integer, intent(in) :: e
       real(wp), intent(out) :: work(:)   !< [kJ]
       logical, intent(out) :: lost(:)
+      type(means_t) :: mean
       real(wp) :: du(DISPLACEMENTS, 6), strain(4), stress(4)
       integer :: g, p
 
@@ -123,7 +124,8 @@ contains
          do g = 1, domain%rule
             p = (e - 1)*domain%rule + g
             strain = strain_of(domain%gauss(g, e), du)
-            stress = 0.5_wp*(old%stress(:4, p) + new%stress(:4, p))
+            mean = means_over(old, new, p)
+            stress = mean%stress
             stress(:3) = stress(:3) - sum(stress(:3))/3
             work(g) = max(0.0_wp, domain%gauss(g, e)%weight*dot_product(stress, strain))
             if (domain%regions(domain%region_of(e))%law%has_energy .or. .not. work(g) > 0.0_wp) cycle

@@ -7,7 +7,7 @@ module water_balance
    use springs, only: water_through_dashpots
    use faults, only: fault_t
    use kinds, only: wp
-   use porous_domain, only: pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
+   use porous_domain, only: means_t, means_over, strain_of, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use run_observer, only: observer_t, STEP, STAGE_ENDS
    use run_state, only: run_t
    use step_balance, only: mean_outflow
@@ -106,7 +106,8 @@ contains
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
-      real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), p(2), parts(3), n, s
+      type(means_t) :: mean
+      real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), strain(4), p(2), parts(3)
       integer :: g, at
 
       associate (node => run%domain%mesh%t6(:, e), carriers => run%domain%carriers(:run%domain%n_carriers(e), e), &
@@ -117,15 +118,14 @@ contains
       do g = 1, run%domain%rule
          at = (e - 1)*run%domain%rule + g
          associate (gp => run%domain%gauss(g, e), old => run%state, new => run%next)
-            s = 0.5_wp*(old%s(at) + new%s(at))
-            n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
+            mean = means_over(old, new, at)
+            strain = strain_of(gp, du)
             p = pressures_at(run%domain, e, g, rise)
-            parts(1) = s*(dot_product(gp%dn(:, 1), du(1, :)) + dot_product(gp%dn(:, 2), du(2, :)) &
-                          + dot_product(gp%n_over_r, du(1, :)))
-            parts(2) = n*(new%s(at) - old%s(at))
-            parts(3) = n*s*p(1)/run%domain%fluids%k_w
+            parts(1) = mean%s*sum(strain(:3))
+            parts(2) = mean%n*(new%s(at) - old%s(at))
+            parts(3) = mean%n*mean%s*p(1)/run%domain%fluids%k_w
             water%gained = water%gained + gp%weight*sum(parts)
-            water%turned = water%turned + gp%weight*(sum(abs(parts)) + ROUNDING*n*s)
+            water%turned = water%turned + gp%weight*(sum(abs(parts)) + ROUNDING*mean%n*mean%s)
          end associate
       end do
    end subroutine book_storage
