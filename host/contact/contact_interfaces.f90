@@ -19,7 +19,7 @@ module contact_interfaces
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, shortest_edge, plate_link_t, new_interface, &
-             tie_to_plate, plate_surface, tangential_tractions
+             tie_to_plate, plate_surface, tangential_tractions, probe_copy
 
    !> A boundary with numbers of its own.
    type :: surface_t
@@ -235,6 +235,20 @@ contains
          end associate
       end do
    end function probe
+
+   !> Probes a copy of contacts, for those who may not change the contacts of a run.
+   subroutine probe_copy(contacts, x, copy, good)
+      class(surface_forces_t), intent(in) :: contacts   !< Such of contacts_t.
+      real(wp), intent(in) :: x(:, :)                   !< (FIELDS, nodes) Displacements first [m].
+      type(contacts_t), intent(out) :: copy
+      logical, intent(out) :: good
+
+      select type (contacts)
+      type is (contacts_t)
+         copy = contacts
+      end select
+      good = copy%probe(x)
+   end subroutine probe_copy
 
    !> One of them, with the friction that its step starts from; aside, no node has slid before. status: as of
    !> contact_evaluate.

@@ -15,7 +15,7 @@ module porous_domain
    private
    public :: domain_t, region_t, gauss_t, model_state_t, prepare_domain, new_state_of, copy_state, mixture_density, &
              given_pressures_at, pressures_at, is_present, gravity_on, strain_of, keep_element_state, exchange_state, &
-             law_of
+             law_of, means_t, means_over
    public :: edge_point_t, points_of_edge, PER_EDGE
    public :: COUPLED, DRAINED, UNDRAINED, DRY, OUTFLOWS
 
@@ -131,6 +131,12 @@ module porous_domain
       !> allocated: made for every step, docs/theory/host.md section 15. (regions)
       type(material_slot_t), allocatable :: laws(:)
    end type model_state_t
+
+   !> A quadrature point over a step, means of both ends: the works and flows of the step are those of means.
+   type :: means_t
+      real(wp) :: stress(4)   !< Effective stress rr, zz, tt, rz, tension positive [kPa].
+      real(wp) :: n, s        !< Porosity, degree of saturation [-].
+   end type means_t
 contains
    !> Geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault
    !> EXIT_ELEMENT: an element is inverted, or an axisymmetric mesh has a point at r <= 0.
@@ -316,6 +322,17 @@ contains
                 dot_product(gp%n_over_r, u(1, :)), &
                 dot_product(gp%dn(:, 2), u(1, :)) + dot_product(gp%dn(:, 1), u(2, :))]
    end function strain_of
+
+   !> Means of a point over the step between two states.
+   pure function means_over(old, new, point) result(mean)
+      type(model_state_t), intent(in) :: old, new
+      integer, intent(in) :: point   !< Number of the point.
+      type(means_t) :: mean
+
+      mean%stress = 0.5_wp*(old%stress(1:4, point) + new%stress(1:4, point))
+      mean%n = 0.5_wp*(old%e(point)/(1 + old%e(point)) + new%e(point)/(1 + new%e(point)))
+      mean%s = 0.5_wp*(old%s(point) + new%s(point))
+   end function means_over
 
    !> Whether an element is part of the ground.
    pure logical function is_present(state, element)

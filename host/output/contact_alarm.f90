@@ -4,15 +4,13 @@
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
-   use faults, only: fault_t
-   use run_observer, only: observer_t, STAGE_BEGINS, STEP
+   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge, probe_copy
    use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
-   public :: contact_alarm_t
+   public :: warn_of_overlaps, warn_of_penetration
 
    !> Depth over the length of the edge from which the warning is given: a curved surface that rolls on leaves about an
    !> eighth of the ratio of edge length to radius, 1e-3 with a mesh that is fine enough for contact [-].
@@ -22,37 +20,20 @@ module contact_alarm
    real(wp), parameter :: ROUNDING_DEPTH = 1.0e-6_wp
    !> Times the depth to which a heavy plate is placed: its share under the edges of the plate differs from the mean.
    real(wp), parameter :: PLACED = 2.0_wp
-
-   type, extends(observer_t) :: contact_alarm_t
-      logical, allocatable :: told(:)   !< (contacts) The warning of penetration has been given.
-   contains
-      procedure :: hear
-   end type contact_alarm_t
 contains
-   !> Looks at contacts where they begin to act, and after every step.
-   subroutine hear(self, event, run, fault)
-      class(contact_alarm_t), intent(inout) :: self
-      integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
-
-      if (size(run%model%contacts) == 0) return
-      if (event == STAGE_BEGINS) call look_at_overlaps(run)
-      if (event == STEP) call look_at_penetration(self, run)
-   end subroutine hear
-
    !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
    !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
-   subroutine look_at_overlaps(run)
-      type(run_t), intent(inout) :: run
+   subroutine warn_of_overlaps(run)
+      type(run_t), intent(in) :: run
+      type(contacts_t) :: contacts
+      logical :: good
 
-      select type (contacts => run%system%contacts)
-      type is (contacts_t)
-         if (contacts%probe(run%state%x)) call warn_of_overlaps(run, contacts%interfaces)
-      end select
-   end subroutine look_at_overlaps
+      if (size(run%model%contacts) == 0) return
+      call probe_copy(run%system%contacts, run%state%x, contacts, good)
+      if (good) call look_at_overlaps(run, contacts%interfaces)
+   end subroutine warn_of_overlaps
 
-   subroutine warn_of_overlaps(run, interfaces)
+   subroutine look_at_overlaps(run, interfaces)
       type(run_t), intent(in) :: run
       type(contact_interface_t), intent(in) :: interfaces(:)
       real(wp) :: depth
@@ -92,29 +73,29 @@ contains
             'or the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact '// &
             'alone holds.'
       end function advice
-   end subroutine warn_of_overlaps
+   end subroutine look_at_overlaps
 
    !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.
-   subroutine look_at_penetration(self, run)
-      class(contact_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+   subroutine warn_of_penetration(run)
+      type(run_t), intent(in) :: run
+      character(:), allocatable :: name
       integer :: i
 
-      if (.not. allocated(self%told)) allocate (self%told(size(run%model%contacts)), source=.false.)
+      if (size(run%model%contacts) == 0) return
       select type (contacts => run%system%contacts)
       type is (contacts_t)
-         do i = 1, size(self%told)
+         do i = 1, size(run%model%contacts)
             associate (t => contacts%interfaces(i))
-               if (.not. t%acts .or. self%told(i) .or. t%result%unpressed <= ALARMING_DEPTH) cycle
-               self%told(i) = .true.
-               call print_warning('contact '//trim(run%model%contacts(i)%name)//', time '// &
+               if (.not. t%acts .or. t%result%unpressed <= ALARMING_DEPTH) cycle
+               name = 'contact '//trim(run%model%contacts(i)%name)
+               call print_warning(name//', time '// &
                   short(run%next%time)//' s: near ('//short(t%result%unpressed_at(1))//', '// &
                   short(t%result%unpressed_at(2))//') m the surfaces have penetrated each other by '// &
                   short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
-                  'gap = ''combined'' in &contact, or refine the slave there.')
+                  'gap = ''combined'' in &contact, or refine the slave there.', once='penetration of '//name)
             end associate
          end do
       end select
-   end subroutine look_at_penetration
+   end subroutine warn_of_penetration
 end module contact_alarm

@@ -3,7 +3,7 @@
 module contact_rows
    use kinds, only: wp
    use boundary_conditions, only: plate_loads
-   use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions
+   use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions, probe_copy
    use model_types, only: model_t, plate_t
    use run_state, only: run_t
    implicit none (type, external)
@@ -40,12 +40,13 @@ contains
    !> [m2], active nodes, sealed nodes, friction on the master along the slave's tangent, summed up [kN], nodes whose
    !> friction is at its limit; of every coordinate of a plate its value [m], rate [m/s], acceleration [m/s2] and load
    !> [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
-   function contact_row(run) result(row)
+   function contact_row(run, work) result(row)
       type(run_t), intent(in) :: run   !< After a step that was taken over.
+      real(wp), intent(in) :: work     !< Work done on contacts so far [kJ].
       real(wp), allocatable :: row(:)
       integer :: i
 
-      row = [run%state%time, run%scheme%dt, run%news%contact_work]
+      row = [run%state%time, run%scheme%dt, work]
       if (allocated(run%system%contacts)) then
          select type (contacts => run%system%contacts)
          type is (contacts_t)
@@ -87,24 +88,24 @@ contains
    !> start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step. A
    !> state that a kernel refuses has none.
    function contact_nodes(run) result(table)
-      type(run_t), intent(inout) :: run   !< The contacts of the run are probed.
+      type(run_t), intent(in) :: run
       real(wp), allocatable :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
+      type(contacts_t) :: contacts
       real(wp), allocatable :: shear(:)
+      logical :: good
       integer :: c, i
 
       allocate (table(8, 0))
-      select type (contacts => run%system%contacts)
-      type is (contacts_t)
-         if (.not. contacts%probe(run%state%x)) return
-         do c = 1, size(run%model%contacts)
-            associate (t => contacts%interfaces(c), found => contacts%interfaces(c)%probe)
-               if (.not. t%acts) cycle
-               shear = tangential_tractions(t)
-               table = reshape([table, (real(c, wp), t%slave%x0(:, i), found%weight(i), &
-                                        found%weight(i)/found%whole(i), found%gap(i), found%pressure(i), shear(i), &
-                                        i=1, size(shear))], [8, size(table, 2) + size(shear)])
-            end associate
-         end do
-      end select
+      call probe_copy(run%system%contacts, run%state%x, contacts, good)
+      if (.not. good) return
+      do c = 1, size(run%model%contacts)
+         associate (t => contacts%interfaces(c), found => contacts%interfaces(c)%probe)
+            if (.not. t%acts) cycle
+            shear = tangential_tractions(t)
+            table = reshape([table, (real(c, wp), t%slave%x0(:, i), found%weight(i), &
+                                     found%weight(i)/found%whole(i), found%gap(i), found%pressure(i), shear(i), &
+                                     i=1, size(shear))], [8, size(table, 2) + size(shear)])
+         end associate
+      end do
    end function contact_nodes
 end module contact_rows

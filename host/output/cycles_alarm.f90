@@ -13,11 +13,12 @@ module cycles_alarm
    use texts, only: short, whole
    use turns, only: follow
    use unknown_fields, only: DISPLACEMENTS
-   use warnings, only: print_warning
+   use warnings, only: print_warning, is_told
    implicit none (type, external)
    private
    public :: cycles_alarm_t
 
+   character(*), parameter :: CYCLES = 'many cycles'
    real(wp), parameter :: LEAST_SWING = 0.1_wp   !< A history turns where it comes back by this share of its range [-].
    !> A displacement turns where it comes back by this share of the largest of the ground. A free vibration that loses
    !> a fifth with every period does so twenty times at most: docs/theory/host.md section 17 [-].
@@ -32,13 +33,12 @@ module cycles_alarm
       !> (2, nodes) Displacements from which those of the ground are counted: a settlement hides no swings after it [m].
       real(wp), allocatable :: origin(:, :)
       logical, allocatable :: counts(:)      !< (nodes) On ground whose strain of many cycles is too large.
-      logical :: told = .false.
    contains
       procedure :: exchange
       procedure :: hear
    end type cycles_alarm_t
 contains
-   !> Exchanges what is counted; a run that is taken up tells it again.
+   !> Exchanges what is counted.
    subroutine exchange(self, archive)
       class(cycles_alarm_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
@@ -56,7 +56,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(cycles_alarm_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       if (event == BEGINS) call begin_to_count(self, run)
@@ -67,7 +67,7 @@ contains
    !> Makes room for the histories and the displacements, which start where the run does.
    subroutine begin_to_count(self, run)
       class(cycles_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       integer :: i
 
       associate (nodes => run%domain%mesh%t6, of => run%domain%region_of)
@@ -103,7 +103,7 @@ contains
    !> has many, once, on standard error.
    subroutine count_turns(self, run)
       class(cycles_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       real(wp) :: factor, least
       integer :: i, n, at
 
@@ -123,11 +123,10 @@ contains
       if (.not. any(self%counts)) return
       call follow_ground(self, merge(run%next%x(:DISPLACEMENTS, :) - self%origin, 0.0_wp, &
                                      spread(self%counts, 1, DISPLACEMENTS)), n)
-      if (self%told .or. maxval(self%turns) <= MANY_REVERSALS) return
-      self%told = .true.
+      if (is_told(CYCLES) .or. maxval(self%turns) <= MANY_REVERSALS) return
       at = maxloc(self%turns, 1)
       call print_warning(now_in(run)//what_turned()//' has turned '//whole(self%turns(at))//' times: '// &
-                         CYCLES_UNTRUSTED)
+                         CYCLES_UNTRUSTED, once=CYCLES)
    contains
       function what_turned() result(text)
          character(:), allocatable :: text

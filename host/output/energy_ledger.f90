@@ -8,11 +8,12 @@ module energy_ledger
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use springs, only: work_of_linear_forces
-   use porous_domain, only: region_t, model_state_t, strain_of, mixture_density, pressures_at, is_present, &
-                            gravity_on, COUPLED, OUTFLOWS
+   use porous_domain, only: region_t, model_state_t, means_t, means_over, strain_of, mixture_density, pressures_at, &
+                            is_present, gravity_on, COUPLED, OUTFLOWS
    use permeability_laws, only: relative_t, relative_permeability
    use generalised_alpha, only: scheme_t
    use run_state, only: run_t
+   use step_balance, only: mean_outflow
    implicit none (type, external)
    private
    public :: ledger_t, exchange_ledger, book_step, book_creation, allowed_creation, kinetic_energy, &
@@ -40,6 +41,9 @@ module energy_ledger
       !> Most that residuals within Newton's tolerance can have done: in all steps before a work exceeds it, then in one
       !> step [kJ].
       real(wp) :: tolerated = 0.0_wp
+      !> (4, points) Stress of the damping in proportion to the stiffness at the end of the last step [kPa]; not
+      !> allocated: no region has such.
+      real(wp), allocatable :: damping_stress(:, :)
    end type ledger_t
 
    !> Works of the mean forces of a step [kJ].
@@ -51,11 +55,8 @@ contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
    !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
-   subroutine book_step(contact_force, run, damping_stress, ledger)
-      real(wp), intent(in) :: contact_force(:)   !< Mean forces of contacts and terms over the step [kN]. (unknowns)
-      type(run_t), intent(inout) :: run          !< After a step; the flows out of run%next are set.
-      !> (4, points) Stress of the damping at the start of the step, set to that at its end [kPa]; not allocated: none.
-      real(wp), allocatable, intent(inout) :: damping_stress(:, :)
+   subroutine book_step(run, ledger)
+      type(run_t), intent(in) :: run   !< After a step.
       type(ledger_t), intent(inout) :: ledger
       type(work_t) :: work
       real(wp), allocatable :: change(:, :), held(:, :)
@@ -69,8 +70,8 @@ contains
          do e = 1, size(domain%mesh%t6, 2)
             if (.not. is_present(new, e)) cycle
             associate (node => domain%mesh%t6(:, e))
-               call add_work_of_element(e, run, damping_stress, change(:, node), work)
-               ledger%supports = ledger%supports + work_to_move_element(e, run, damping_stress, held(:, node))
+               call add_work_of_element(e, run, ledger%damping_stress, change(:, node), work)
+               ledger%supports = ledger%supports + work_to_move_element(e, run, ledger%damping_stress, held(:, node))
                if (.not. domain%with_w .or. .not. run%scheme%has_rates) cycle
                if (domain%regions(domain%region_of(e))%drainage == COUPLED) call book_seepage(e, run, ledger)
             end associate
@@ -83,9 +84,9 @@ contains
          ledger%pores = ledger%pores + work%pores
          ledger%gravity = ledger%gravity + work%gravity
          ledger%damping = ledger%damping + work%damping
-         call book_forces(run, contact_force, change, ledger)
+         call book_forces(run, change, ledger)
          call book_outflow(run, ledger)
-         if (allocated(damping_stress)) call follow_damping(run, damping_stress)
+         if (allocated(ledger%damping_stress)) call follow_damping(run, ledger%damping_stress)
       end associate
    end subroutine book_step
 
@@ -141,9 +142,8 @@ contains
    end function moved_by_supports
 
    !> Forces on nodes: loads, contacts, and the inertia of bodies that supports move.
-   subroutine book_forces(run, contact_force, change, ledger)
+   subroutine book_forces(run, change, ledger)
       type(run_t), intent(in) :: run
-      real(wp), intent(in) :: contact_force(:)
       real(wp), intent(in) :: change(:, :)
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: load
@@ -151,7 +151,7 @@ contains
 
       do i = 1, run%dofs%n
          associate (f => run%dofs%field(i), k => run%dofs%node(i), constraint => run%constraint, &
-                    scheme => run%scheme, touch => contact_force(i))
+                    scheme => run%scheme, touch => run%mean_force(i))
             if (f > DISPLACEMENTS) cycle
             load = 0.5_wp*(constraint%load_0(i) + constraint%load_1(i)) - constraint%offset(i)
             ledger%loads = ledger%loads + load*change(f, k)
@@ -164,31 +164,16 @@ contains
       end do
    end subroutine book_forces
 
-   !> Flow out through prescribed pressures and past limits, less the rain: what runs off never entered. Its mean over
-   !> the step is that of the rate of what is stored, so that what has left is what is missing inside, whatever the
-   !> steps. docs/theory/host.md section 9.
+   !> Flow out through prescribed pressures and past limits, less the rain. docs/theory/host.md section 9.
    subroutine book_outflow(run, ledger)
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
-      real(wp) :: flow(OUTFLOWS), mean(OUTFLOWS)
-      integer :: i
+      real(wp) :: left(OUTFLOWS)
 
-      associate (dofs => run%dofs, scheme => run%scheme, constraint => run%constraint, &
-                 reaction => run%system%reaction, before => run%state%outflow, after => run%next%outflow)
-         after = 0.0_wp
-         if (.not. scheme%has_rates) return
-         flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
-         do i = 1, dofs%n
-            if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
-            if (dofs%field(i) /= AT_P_C) cycle
-            if (constraint%fixed(i)) flow(2) = flow(2) - reaction(i)
-            if (constraint%air(dofs%node(i))) flow = flow - reaction(i)
-         end do
-         after = before + (flow - before)/scheme%l_p
-         mean = before + scheme%gamma_1*(after - before)
-         ledger%outflow = ledger%outflow + scheme%dt*mean(1)
-         ledger%outflow_air = ledger%outflow_air + scheme%dt*mean(2)
-      end associate
+      if (.not. run%scheme%has_rates) return
+      left = run%scheme%dt*mean_outflow(run)
+      ledger%outflow = ledger%outflow + left(1)
+      ledger%outflow_air = ledger%outflow_air + left(2)
    end subroutine book_outflow
 
    !> Work that moves an element as a step does, inertia included [kJ].
@@ -212,7 +197,8 @@ contains
       real(wp), allocatable, intent(in) :: damping_stress(:, :)
       real(wp), intent(in) :: du(DISPLACEMENTS, 6)   !< [m]
       type(work_t), intent(inout) :: work
-      real(wp) :: damping(4), strain(4), p(2), middle(2, 6), s, n, rho, gravity, push(DISPLACEMENTS)
+      type(means_t) :: mean
+      real(wp) :: damping(4), strain(4), p(2), middle(2, 6), rho, gravity, push(DISPLACEMENTS)
       real(wp) :: dv(DISPLACEMENTS, 6), v(DISPLACEMENTS, 6)
       integer :: g, at, node(6)
 
@@ -228,13 +214,11 @@ contains
             at = (e - 1)*domain%rule + g
             associate (gp => domain%gauss(g, e), region => domain%regions(domain%region_of(e)))
                strain = strain_of(gp, du)
-               work%skeleton = work%skeleton &
-                  + 0.5_wp*gp%weight*dot_product(old%stress(1:4, at) + new%stress(1:4, at), strain)
-               s = 0.5_wp*(old%s(at) + new%s(at))
-               n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
+               mean = means_over(old, new, at)
+               work%skeleton = work%skeleton + gp%weight*dot_product(mean%stress, strain)
                p = pressures_at(domain, e, g, middle)
-               work%pores = work%pores - gp%weight*(p(1) + (1 - s)*p(2))*sum(strain(1:3))
-               rho = mixture_density(domain, region, n, s)
+               work%pores = work%pores - gp%weight*(p(1) + (1 - mean%s)*p(2))*sum(strain(1:3))
+               rho = mixture_density(domain, region, mean%n, mean%s)
                work%gravity = work%gravity - gp%weight*rho*gravity*dot_product(gp%n, du(2, :))
                if (allocated(region%against_rate) .and. scheme%has_rates) work%damping = work%damping &
                   + gp%weight*dot_product(matmul(region%against_rate, strain_of(gp, v)), strain)
@@ -259,7 +243,8 @@ contains
       type(ledger_t), intent(inout) :: ledger
       type(relative_t) :: rel
       real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity
-      integer :: g, p, n_p
+      type(means_t) :: mean
+      integer :: g, n_p
 
       gravity = 0.5_wp*(gravity_on(run%state, e) + gravity_on(run%next, e))
       n_p = run%domain%n_p
@@ -267,10 +252,10 @@ contains
          middle = 0.5_wp*(run%state%x(AT_P_W:AT_P_C, node) + run%next%x(AT_P_W:AT_P_C, node))
       end associate
       do g = 1, run%domain%rule
-         p = (e - 1)*run%domain%rule + g
+         mean = means_over(run%state, run%next, (e - 1)*run%domain%rule + g)
          associate (gp => run%domain%gauss(g, e), f => run%domain%fluids, &
                     law => run%domain%permeabilities(run%domain%regions(run%domain%region_of(e))%permeability))
-            rel = relative_permeability(law, 0.5_wp*(run%state%s(p) + run%next%s(p)))
+            rel = relative_permeability(law, mean%s)
             kappa = law%intrinsic*rel%w/f%eta_w
             drive = matmul(middle(AT_P_W, :n_p), gp%dm(:n_p, :)) + [0.0_wp, f%rho_w*gravity]
             ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
@@ -380,6 +365,8 @@ contains
                             'steps in a row with more created energy than the stage allows')
       call archive%exchange('tolerated', ledger%tolerated, 'kJ', &
                             'most that residuals within the tolerance can have done')
+      call archive%exchange_allocatable('damping_stress', ledger%damping_stress, 'kPa', &
+                                        'stress of the damping in proportion to the stiffness')
       call archive%leave('ledger')
    end subroutine exchange_ledger
 end module energy_ledger

@@ -51,7 +51,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(field_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       select case (event)
@@ -73,7 +73,7 @@ contains
       real(wp) :: now, before
 
       due = .false.
-      if (run%news%last) return
+      if (run%last) return
       now = run%state%time - run%at%t_start
       before = run%state%time - run%scheme%dt - run%at%t_start
       associate (stage => run%stage)

@@ -1,22 +1,21 @@
 ! SPDX-License-Identifier: MIT
-!> Observer that keeps the ledger of a run: it books every accepted step, writes ledger.csv, and ends a run that has
-!> created energy, whose results may be wrong by any factor although every step has converged. docs/theory/host.md
-!> section 9.
+!> Observer that keeps the ledger of a run: it books every accepted step, writes the tables with a row for each,
+!> ledger.csv and contact.csv, and ends a run that has created energy, whose results may be wrong by any factor although
+!> every step has converged. docs/theory/host.md section 9.
 module ledger_observer
    use archive, only: archive_t
-   use csv, only: csv_t, check_csv, write_row, hand_over, close_csv, is_open
+   use contact_rows, only: contact_columns, contact_row
+   use csv, only: csv_t, check_csv, write_row, hand_over, close_csv, is_open, NUMBERS
    use energy_ledger, only: ledger_t, exchange_ledger, book_step, book_creation, allowed_creation, &
                             kinetic_energy, imbalance, ALARMING_SHARE
    use exit_codes, only: EXIT_ENERGY
    use faults, only: fault_t, raise
    use kinds, only: wp
-   use linear_system, only: T_CONTACT
+   use localisation, only: localisation_observer_t
    use run_observer, only: observer_t, FITS, BEGINS, STEP, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
    use run_tables, only: open_table, exchange_table
-   use springs, only: add_mean_of_springs
    use texts, only: short
-   use wall_clock, only: clock, add_elapsed
    use warnings, only: print_warning
    implicit none (type, external)
    private
@@ -35,40 +34,45 @@ module ledger_observer
 
    type, extends(observer_t) :: ledger_observer_t
       type(csv_t) :: table
+      type(csv_t) :: contact   !< It is open if the scene has contacts or plates.
+      type(localisation_observer_t) :: localisation   !< Hears what the ledger hears; its share is a column.
       type(ledger_t) :: ledger
-      !> (4, points) Stress of the damping in proportion to the stiffness; allocated where a region has it [kPa].
-      real(wp), allocatable :: damping_stress(:, :)
    contains
       procedure :: exchange
       procedure :: hear
    end type ledger_observer_t
 contains
-   !> Exchanges ledger, stress of the damping and the length of the table.
+   !> Exchanges ledger, localisation and the lengths of the tables.
    subroutine exchange(self, archive)
       class(ledger_observer_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
 
       call exchange_ledger(self%ledger, archive)
-      call archive%exchange_allocatable('damping_stress', self%damping_stress, 'kPa', &
-                                        'stress of the damping in proportion to the stiffness')
+      call self%localisation%exchange(archive)
       call exchange_table('ledger', self%table, archive)
+      call exchange_table('contact', self%contact, archive)
    end subroutine exchange
 
-   !> Books every step and writes its row in ledger.csv. Faults: EXIT_RESTART, the table is missing or too short;
-   !> EXIT_OUTPUT, it cannot be written; those of book.
+   !> Books every step and writes its rows. Faults: EXIT_RESTART, a table is missing or too short; EXIT_OUTPUT, it
+   !> cannot be written; those of book.
    subroutine hear(self, event, run, fault)
       class(ledger_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
+      call self%localisation%hear(event, run, fault)
       select case (event)
       case (FITS)
          call check_csv(self%folder//'/ledger.csv', self%table%bytes, fault)
+         call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
       case (BEGINS)
          if (run%steps == 0 .and. any(run%domain%regions%stiffness_damping > 0.0_wp)) &
-            allocate (self%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
-         if (allocated(self%folder)) call open_table(self%folder//'/ledger.csv', COLUMNS, self%table, fault)
+            allocate (self%ledger%damping_stress(4, size(run%state%stress, 2)), source=0.0_wp)
+         if (.not. allocated(self%folder)) return
+         call open_table(self%folder//'/ledger.csv', COLUMNS, self%table, fault)
+         if (size(run%model%contacts) + size(run%model%plates) > 0) &
+            call open_table(self%folder//'/contact.csv', contact_columns(run%model), self%contact, fault)
       case (STEP)
          call book(self, run, fault)
       case (TAKEN_OVER)
@@ -77,6 +81,7 @@ contains
          call look_at_creation(self, run)
       case (ENDS)
          call close_csv(self%table, fault)
+         call close_csv(self%contact, fault)
       end select
    end subroutine hear
 
@@ -84,9 +89,8 @@ contains
    !> more than the stage may, or in its last one. docs/theory/host.md section 9. Fault EXIT_ENERGY.
    subroutine book(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
-      real(wp) :: force(run%dofs%n)
 
       associate (ledger => self%ledger, stage => run%stage)
          if (run%at%step == 1) then
@@ -94,46 +98,23 @@ contains
             ! The velocities of a stage without inertia are no motion: each stage begins its own account.
             if (run%steps > 1) ledger%open_0 = imbalance(ledger)
          end if
-         call find_mean_forces(run, force)
-         call book_step(force, run, self%damping_stress, ledger)
+         call book_step(run, ledger)
          call book_creation(run, ledger)
-         run%news%contact_work = ledger%contact
          if (.not. stage%has_inertia) return
          ledger%overdue = merge(ledger%overdue + 1, 0.0_wp, &
                                 ledger%most_created > allowed_creation(stage%created_energy, ledger))
-         if (ledger%overdue < merge(1.0_wp, PATIENCE, run%news%last)) return
+         if (ledger%overdue < merge(1.0_wp, PATIENCE, run%last)) return
          call raise(fault, EXIT_ENERGY, 'Stage '//trim(stage%name)//', time '//short(run%next%time)// &
                     ' s: the run has created '//amount(ledger)//', allowed '//short(100*stage%created_energy)// &
                     ' %. Its results may be wrong by any factor: '//REMEDY//'; created_energy of &stage allows more.')
       end associate
    end subroutine book
 
-   !> Mean of the forces of contacts and terms at the ends of a step, to be added to the internal ones; those of the
-   !> contacts are zero where the displacements are refused [kN]. docs/theory/host.md section 9.
-   subroutine find_mean_forces(run, force)
-      type(run_t), intent(inout) :: run     !< The contacts are probed.
-      real(wp), intent(out) :: force(:)     !< (unknowns)
-      real(wp), allocatable :: before(:), after(:)
-      real(wp) :: t0
-
-      force = 0.0_wp
-      associate (dofs => run%dofs)
-         if (allocated(run%system%contacts)) then
-            t0 = clock()
-            if (run%system%contacts%forces(dofs, run%state%x, before)) then
-               if (run%system%contacts%forces(dofs, run%next%x, after)) force = 0.5_wp*(before + after)
-            end if
-            call add_elapsed(run%system%seconds(T_CONTACT), t0)
-         end if
-         call add_mean_of_springs(run%constraint%springs, dofs, run%scheme, run%state, run%next, force)
-      end associate
-   end subroutine find_mean_forces
-
-   !> Writes the row of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: it cannot be
-   !> written.
+   !> Writes the rows of a step. Works [kJ], outflow [m3]: docs/theory/host.md section 9. Fault EXIT_OUTPUT: they cannot
+   !> be written.
    subroutine write_step(self, run, fault)
       class(ledger_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       self%ledger%dissipated = self%ledger%dissipated + run%dissipated
@@ -143,20 +124,24 @@ contains
             run%scheme%dt, run%at%stage, log%iterations, run%cuts, log%error, log%first_error, log%reduction, &
             log%correction, real(log%rate_evaluations, wp), ledger%kinetic, ledger%skeleton, ledger%pores, &
             ledger%gravity, ledger%loads, ledger%supports, ledger%seepage, ledger%damping, ledger%dissipated, &
-            imbalance(ledger), ledger%outflow, ledger%outflow_air, run%news%localised, run%control%error
+            imbalance(ledger), ledger%outflow, ledger%outflow_air, self%localisation%share, run%control%error
       end associate
       call write_row(self%table, fault)
       call hand_over(self%table, fault)
+      if (.not. is_open(self%contact)) return
+      write (self%contact%row, NUMBERS) contact_row(run, self%ledger%contact)
+      call write_row(self%contact, fault)
+      call hand_over(self%contact, fault)
    end subroutine write_step
 
    !> Warns at the end of a dynamic stage that has created much, on standard error, also where the run is quiet. From
    !> ALARMING_SHARE of the largest work on; nothing beyond what has ended the run.
    subroutine look_at_creation(self, run)
       class(ledger_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
 
       associate (stage => run%stage, ledger => self%ledger)
-         if (stage%zero_displacements .and. allocated(self%damping_stress)) self%damping_stress = 0.0_wp
+         if (stage%zero_displacements .and. allocated(ledger%damping_stress)) ledger%damping_stress = 0.0_wp
          if (.not. stage%has_inertia .or. ledger%most_created <= allowed_creation(ALARMING_SHARE, ledger)) return
          if (ledger%most_created > allowed_creation(stage%created_energy, ledger)) return
          call print_warning('stage '//trim(stage%name)//' has created '//amount(ledger)// &

@@ -7,7 +7,7 @@ module localisation
    use archive, only: archive_t
    use faults, only: fault_t
    use kinds, only: wp, PI
-   use porous_domain, only: is_present, strain_of
+   use porous_domain, only: means_t, means_over, is_present, strain_of
    use run_observer, only: observer_t, BEGINS, STEP, STAGE_ENDS
    use run_state, only: run_t, now_in
    use texts, only: short, whole
@@ -25,17 +25,17 @@ module localisation
    type, extends(observer_t) :: localisation_observer_t
       real(wp) :: shear = 0.0_wp          !< Positive work of the points on deviators [kJ].
       real(wp) :: localised = 0.0_wp      !< Part of it by points whose tangent had lost ellipticity [kJ].
+      real(wp) :: share = 0.0_wp          !< Part over whole, after a step [-].
       real(wp), allocatable :: work(:)    !< (points) Such work of every point [kJ].
       real(wp) :: since = 0.0_wp          !< When the share first was above TOLD_SHARE [s].
       logical :: is_above = .false.       !< The share has been above it.
       real(wp) :: normal = 0.0_wp         !< Angle of the normal where most of that work is done, from r towards z.
-      logical :: told = .false.
    contains
       procedure :: exchange
       procedure :: hear
    end type localisation_observer_t
 contains
-   !> Exchanges what is booked; a run that is taken up tells it again.
+   !> Exchanges what is booked.
    subroutine exchange(self, archive)
       class(localisation_observer_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
@@ -54,7 +54,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(localisation_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       select case (event)
@@ -63,20 +63,19 @@ contains
       case (STEP)
          call book(self, run)
       case (STAGE_ENDS)
-         if (.not. (run%news%complete .and. run%stage%zero_displacements)) return
+         if (.not. (run%complete .and. run%stage%zero_displacements)) return
          self%shear = 0.0_wp
          self%localised = 0.0_wp
          self%work = 0.0_wp
          self%is_above = .false.
-         self%told = .false.
       end select
    end subroutine hear
 
-   !> Books a step, gives its share to the ledger, and tells a share above TOLD_SHARE, once, on standard error. Points
+   !> Books a step, and tells a share above TOLD_SHARE, once, on standard error. Points
    !> are looked at in parallel, and added up in their order.
    subroutine book(self, run)
       class(localisation_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       real(wp), allocatable :: work(:)
       logical, allocatable :: lost(:)
       real(wp) :: least
@@ -100,13 +99,10 @@ contains
       worst = maxloc(self%work, dim=1)
       if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
                                               self%normal)
-      run%news%localised = self%localised/max(self%shear, tiny(1.0_wp))
-      if (run%news%localised > TOLD_SHARE .and. .not. self%is_above) then
-         self%is_above = .true.
-         self%since = run%next%time
-      end if
-      if (self%told .or. .not. self%is_above) return
-      self%told = .true.
+      self%share = self%localised/max(self%shear, tiny(1.0_wp))
+      if (self%is_above .or. self%share <= TOLD_SHARE) return
+      self%is_above = .true.
+      self%since = run%next%time
       call tell(self, run, worst)
    end subroutine book
 
@@ -116,6 +112,7 @@ contains
       integer, intent(in) :: e
       real(wp), intent(out) :: work(:)   !< [kJ]
       logical, intent(out) :: lost(:)
+      type(means_t) :: mean
       real(wp) :: du(DISPLACEMENTS, 6), strain(4), stress(4)
       integer :: g, p
 
@@ -127,7 +124,8 @@ contains
          do g = 1, domain%rule
             p = (e - 1)*domain%rule + g
             strain = strain_of(domain%gauss(g, e), du)
-            stress = 0.5_wp*(old%stress(:4, p) + new%stress(:4, p))
+            mean = means_over(old, new, p)
+            stress = mean%stress
             stress(:3) = stress(:3) - sum(stress(:3))/3
             work(g) = max(0.0_wp, domain%gauss(g, e)%weight*dot_product(stress, strain))
             if (domain%regions(domain%region_of(e))%law%has_energy .or. .not. work(g) > 0.0_wp) cycle
@@ -146,7 +144,7 @@ contains
       associate (n => run%domain%rule)
          x = run%domain%gauss(mod(worst - 1, n) + 1, (worst - 1)/n + 1)%x
       end associate
-      call print_warning(now_in(run)//'shear localises. '//short(0.1_wp*nint(1000*run%news%localised))// &
+      call print_warning(now_in(run)//'shear localises. '//short(0.1_wp*nint(1000*self%share))// &
          ' % of the shear work so far is done where the tangent of the soil has lost ellipticity (column localised '// &
          'of ledger.csv; above '//short(100*TOLD_SHARE)//' % since '//short(self%since)//' s), most of it at ('// &
          short(x(1))//', '//short(x(2))//') m in a band with its normal at '//whole(nint(self%normal*180/PI))// &

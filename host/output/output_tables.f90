@@ -1,9 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> Observer that writes the tables of a run: histories of points, contacts and plates, reactions of a stage, and nodes,
-!> points and contacts at the end of a stage.
+!> Observer that writes the tables of a run: histories of points, reactions of a stage, and nodes, points and contacts
+!> at the end of a stage. Those with a row for every step are the ledger's.
 module output_tables
    use archive, only: archive_t
-   use contact_rows, only: contact_columns, contact_row, contact_nodes
+   use contact_rows, only: contact_nodes
    use csv, only: csv_t, new_csv, check_csv, write_row, hand_over, close_csv, is_open, NUMBERS
    use faults, only: fault_t
    use given_pressures, only: set_middles
@@ -24,7 +24,6 @@ module output_tables
 
    type, extends(observer_t) :: table_observer_t
       type(csv_t) :: history
-      type(csv_t) :: contact     !< It is open if the scene has contacts or plates.
       type(csv_t) :: reactions   !< Table of the stage under way, if it prescribes or loads anything.
    contains
       procedure :: exchange
@@ -37,7 +36,6 @@ contains
       class(archive_t), intent(inout) :: archive
 
       call exchange_table('histories', self%history, archive)
-      call exchange_table('contact', self%contact, archive)
       call exchange_table('reactions', self%reactions, archive)
    end subroutine exchange
 
@@ -46,18 +44,15 @@ contains
    subroutine hear(self, event, run, fault)
       class(table_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       select case (event)
       case (FITS)
          call check_csv(self%folder//'/histories.csv', self%history%bytes, fault)
-         call check_csv(self%folder//'/contact.csv', self%contact%bytes, fault)
          call check_csv(reactions_of(self%folder, run%stage%name), self%reactions%bytes, fault)
       case (BEGINS)
          call open_table(self%folder//'/histories.csv', history_columns(run%model), self%history, fault)
-         if (size(run%model%contacts) + size(run%model%plates) > 0) &
-            call open_table(self%folder//'/contact.csv', contact_columns(run%model), self%contact, fault)
          if (fault%code /= 0 .or. run%steps > 0) return
          call write_points(self%folder, run%model, fault)
          if (fault%code == 0) call write_history(self%history, run, fault)
@@ -71,7 +66,6 @@ contains
             'contact,r,z,weight,coverage,gap,pressure,shear', contact_nodes(run), fault)
       case (ENDS)
          call close_csv(self%history, fault)
-         call close_csv(self%contact, fault)
          call close_csv(self%reactions, fault)
       end select
    end subroutine hear
@@ -79,19 +73,14 @@ contains
    !> Writes the rows of a step that are due. Fault EXIT_OUTPUT: a file cannot be written.
    subroutine write_rows(self, run, fault)
       class(table_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
-      if (is_open(self%contact)) then
-         write (self%contact%row, NUMBERS) contact_row(run)
-         call write_row(self%contact, fault)
-      end if
-      if (mod(run%at%step, run%stage%every) == 0 .or. run%news%last) then
+      if (mod(run%at%step, run%stage%every) == 0 .or. run%last) then
          call write_history(self%history, run, fault)
          if (fault%code == 0) call write_reactions(self, run, fault)
       end if
       call hand_over(self%history, fault)
-      call hand_over(self%contact, fault)
       call hand_over(self%reactions, fault)
    end subroutine write_rows
 

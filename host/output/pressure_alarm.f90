@@ -4,18 +4,16 @@
 !> 9.2), or in which a material made for compression has lost its mean effective stress and has no guard that would have
 !> kept it.
 module pressure_alarm
-   use warnings, only: print_warning
+   use warnings, only: print_warning, is_told
    use kinds, only: wp
    use material_point, only: lost_pressure, PRESSURE_LOST
-   use faults, only: fault_t
    use porous_domain, only: is_present, COUPLED
-   use run_observer, only: observer_t, STEP
    use run_state, only: run_t, now_in
    use texts, only: short
    use unknown_fields, only: AT_P_W
    implicit none (type, external)
    private
-   public :: pressure_alarm_t, lines_t, find_lines, find_alternation
+   public :: warn_of_pressures, lines_t, find_lines, find_alternation
 
    !> Least amplitude of an alternation that is told, share of the range of all pressures: a field that the mesh follows
    !> bends one way at neighbouring nodes and leaves none [-].
@@ -24,45 +22,37 @@ module pressure_alarm
    real(wp), parameter :: SMALLEST_RANGE = 0.1_wp   !< [kPa] Of pressures that anybody looks at.
    real(wp), parameter :: OVEN_DRY = 1.0e6_wp       !< [kPa] Suction of soil from the oven: none holds water beyond it.
 
+   character(*), parameter :: OSCILLATION = 'oscillation of pressures', NO_PRESSURE = 'lost mean stress', &
+                              INFLOW = 'inflow at a limit', DRY_GROUND = 'dry ground'
+
    !> Lines of five nodes of a mesh: two sides that go on from each other at a corner.
    type :: lines_t
       integer, allocatable :: nodes(:, :)   !< (5, lines) end, middle, corner, middle, end
       real(wp), allocatable :: share(:)     !< (lines) Weight of the first middle in the mean at the corner [-].
    end type lines_t
-
-   type, extends(observer_t) :: pressure_alarm_t
-      type(lines_t) :: lines   !< Lines of the mesh; found when they are asked for first.
-      logical :: told_oscillation = .false., told_pressure = .false., told_inflow = .false., told_dry = .false.
-   contains
-      procedure :: hear
-   end type pressure_alarm_t
 contains
    !> Warns of each once a run, on standard error, also where the run is quiet.
-   subroutine hear(self, event, run, fault)
-      class(pressure_alarm_t), intent(inout) :: self
-      integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
+   subroutine warn_of_pressures(run, lines)
+      type(run_t), intent(in) :: run            !< After a step.
+      type(lines_t), intent(inout) :: lines     !< Lines of the mesh; found when they are asked for first.
 
-      if (event /= STEP) return
-      call warn_of_oscillation(run, self%lines, self%told_oscillation)
-      call warn_lost_pressure(run, self%told_pressure)
-      call warn_of_inflow(run, self%told_inflow)
-      call warn_of_dry_ground(run, self%told_dry)
-   end subroutine hear
+      if (.not. is_told(OSCILLATION)) call warn_of_oscillation(run, lines)
+      if (.not. is_told(NO_PRESSURE)) call warn_lost_pressure(run)
+      call warn_of_inflow(run)
+      if (.not. is_told(DRY_GROUND)) call warn_of_dry_ground(run)
+   end subroutine warn_of_pressures
 
    !> Warns of pressures that alternate; not in static stages, nor of linear pressures. docs/theory/host.md section 3.1.
-   subroutine warn_of_oscillation(run, lines, told)
+   subroutine warn_of_oscillation(run, lines)
       type(run_t), intent(in) :: run
       type(lines_t), intent(inout) :: lines   !< Lines of the mesh; found when they are asked for first.
-      logical, intent(inout) :: told
       real(wp) :: share
       logical :: counts(size(run%domain%mesh%x, 2))
       integer :: node, e
 
       associate (domain => run%domain, mesh => run%domain%mesh, x => run%next%x)
          ! Linear pressures are those of the corners alone.
-         if (told .or. .not. run%stage%has_rates .or. domain%n_p < 6) return
+         if (.not. run%stage%has_rates .or. domain%n_p < 6) return
          ! Pressures that are no unknowns of the ground do not count.
          counts = .false.
          do e = 1, size(mesh%t6, 2)
@@ -72,31 +62,28 @@ contains
          if (.not. allocated(lines%nodes)) lines = find_lines(mesh%x, mesh%t6)
          call find_alternation(lines, x(AT_P_W, :size(counts)), counts, share, node)
          if (share <= ALARMING_SHARE) return
-         told = .true.
          call print_warning(now_in(run)//'the pore water pressure at ('//short(mesh%x(1, node))//', '// &
             short(mesh%x(2, node))//') m, '//short(x(AT_P_W, node))//' kPa, lies to the other side of the mean of '// &
             'its neighbours than they do of theirs, by '//short(100*share)//' % of the range of all pressures. '// &
             'Pressures that alternate from node to node are wrong: set pressures = ''linear'' in &scene, which is '// &
-            'stable where water cannot drain.')
+            'stable where water cannot drain.', once=OSCILLATION)
       end associate
    end subroutine warn_of_oscillation
 
    !> Warns of a material that has lost its mean effective stress. docs/theory/memory-rules.md section 2.2.
-   subroutine warn_lost_pressure(run, told)
+   subroutine warn_lost_pressure(run)
       type(run_t), intent(in) :: run
-      logical, intent(inout) :: told
       integer :: e, g
 
-      if (told) return
       do e = 1, size(run%domain%region_of)
          associate (m => run%domain, law => run%domain%regions(run%domain%region_of(e))%law)
             if (.not. law%unguarded .or. .not. is_present(run%next, e)) cycle
             do g = 1, m%rule
                associate (stress => run%next%stress(:, (e - 1)*m%rule + g), x => m%gauss(g, e)%x)
                   if (.not. lost_pressure(law, stress)) cycle
-                  told = .true.
                   call print_warning('time '//short(run%next%time)//' s: the mean effective stress p'' at ('// &
-                     short(x(1))//', '//short(x(2))//') m is '//short(-sum(stress(:3))/3)//' kPa: '//PRESSURE_LOST)
+                     short(x(1))//', '//short(x(2))//') m is '//short(-sum(stress(:3))/3)//' kPa: '//PRESSURE_LOST, &
+                                     once=NO_PRESSURE)
                   return
                end associate
             end do
@@ -105,35 +92,31 @@ contains
    end subroutine warn_lost_pressure
 
    !> Warns of a node of a seepage face that lets water in. docs/theory/host.md section 7.7.
-   subroutine warn_of_inflow(run, told)
+   subroutine warn_of_inflow(run)
       type(run_t), intent(in) :: run
-      logical, intent(inout) :: told
 
-      if (told .or. run%constraint%stuck == 0) return
-      told = .true.
+      if (run%constraint%stuck == 0) return
       associate (x => run%domain%mesh%x(:, run%dofs%node(run%constraint%stuck)))
          call print_warning(now_in(run)//'the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, '// &
             'or under rain, left its limit three times within the step, and keeps it although water enters there. '// &
-            'Shorten the steps or refine the mesh there.')
+            'Shorten the steps or refine the mesh there.', once=INFLOW)
       end associate
    end subroutine warn_of_inflow
 
    !> Warns of pore water under more tension than any soil holds: more is drawn than the ground has, or lets through,
    !> and water that expands makes up for it. docs/theory/host.md section 9.2.
-   subroutine warn_of_dry_ground(run, told)
+   subroutine warn_of_dry_ground(run)
       type(run_t), intent(in) :: run
-      logical, intent(inout) :: told
       integer :: node
 
-      if (told .or. .not. run%domain%with_w) return
+      if (.not. run%domain%with_w) return
       associate (x => run%domain%mesh%x, p_w => run%next%x(AT_P_W, :))
          node = minloc(p_w(:size(x, 2)), dim=1)
          if (p_w(node) > -OVEN_DRY) return
-         told = .true.
          call print_warning(now_in(run)//'the pore water at ('//short(x(1, node))//', '//short(x(2, node))// &
             ') m is under a tension of '//short(-p_w(node))//' kPa. Soil is oven-dry at '//short(OVEN_DRY)//' kPa: '// &
             'more is drawn than the ground holds or lets through, and the rest comes out of water that expands. '// &
-            'Let a &fix of p_w, or a &history, limit what is drawn.')
+            'Let a &fix of p_w, or a &history, limit what is drawn.', once=DRY_GROUND)
       end associate
    end subroutine warn_of_dry_ground
 

@@ -31,7 +31,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(progress_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       if (.not. to_terminal()) return
@@ -53,7 +53,7 @@ contains
    !> Shows the step, the share of the stage and the time that the stage takes yet if it goes on as so far.
    subroutine show_step(self, run)
       class(progress_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       real(wp) :: now
 
       now = clock()

@@ -50,7 +50,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(folder_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
       integer(c_int) :: done
 

@@ -1,28 +1,22 @@
 ! SPDX-License-Identifier: MIT
 !> The list of observers of a run. A new one needs a line here.
 module run_output
-   use checkpoints, only: checkpoint_observer_t
-   use contact_alarm, only: contact_alarm_t
-   use convergence_alarm, only: convergence_alarm_t
+   use alarms, only: alarms_t
    use cycles_alarm, only: cycles_alarm_t
    use field_files, only: field_observer_t
    use kinds, only: wp
    use ledger_observer, only: ledger_observer_t
-   use localisation, only: localisation_observer_t
    use output_tables, only: table_observer_t
-   use pressure_alarm, only: pressure_alarm_t
    use progress_line, only: progress_observer_t
    use run_folder, only: folder_observer_t
    use run_observer, only: observers_t
    use run_summary, only: summary_observer_t
-   use strain_alarm, only: strain_alarm_t
    use water_balance, only: water_alarm_t
    implicit none (type, external)
    private
    public :: list_observers
 contains
-   !> Lists the observers of a run in the order in which they are told. Localisation stands before the ledger, and this
-   !> before the tables, which take a column from it, the checkpoint behind all that it keeps.
+   !> Lists the observers of a run in the order in which they are told.
    subroutine list_observers(folder, quiet, verbose, started, observers)
       character(*), intent(in) :: folder   !< Folder of the results.
       logical, intent(in) :: quiet         !< Errors and warnings only are printed.
@@ -33,17 +27,12 @@ contains
       observers%folder = folder
       call observers%add(folder_observer_t())
       if (.not. quiet) call observers%add(progress_observer_t())
-      call observers%add(convergence_alarm_t())
-      call observers%add(contact_alarm_t())
-      call observers%add(pressure_alarm_t())
+      call observers%add(alarms_t())
       call observers%add(cycles_alarm_t())
-      call observers%add(strain_alarm_t())
-      call observers%add(localisation_observer_t())
       call observers%add(ledger_observer_t())
       call observers%add(water_alarm_t())
       call observers%add(table_observer_t())
       call observers%add(field_observer_t())
       call observers%add(summary_observer_t(quiet=quiet, verbose=verbose, started=started))
-      call observers%add(checkpoint_observer_t())
    end subroutine list_observers
 end module run_output

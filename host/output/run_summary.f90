@@ -53,7 +53,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(summary_observer_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       select case (event)
@@ -65,7 +65,7 @@ contains
       case (TAKEN_OVER)
          call note_peaks(self, run)
       case (STAGE_ENDS)
-         if (run%news%complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//trim(run%stage%name)// &
+         if (run%complete .and. .not. self%quiet) write (output_unit, '(a)') 'Stage '//trim(run%stage%name)// &
             ': '//counted(run%at%step, 'step')//', time '//short(run%state%time)//' s, '// &
             counted(run%iterations, 'linear solve')//' and '//counted(run%cuts, 'cut')//' so far.'
       case (ENDS)
@@ -78,7 +78,7 @@ contains
    !> Notes the largest values.
    subroutine note_peaks(self, run)
       class(summary_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       real(wp) :: x(FIELDS)
       integer :: i
 

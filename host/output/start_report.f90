@@ -3,11 +3,11 @@
 !> not be meant, and where a checkpoint would take it up.
 module start_report
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use contact_alarm, only: contact_alarm_t
+   use contact_alarm, only: warn_of_overlaps
    use faults, only: fault_t
    use start_findings, only: balance_t
    use run_cost, only: size_of_run
-   use run_observer, only: observers_t, FITS, STAGE_BEGINS
+   use run_observer, only: observers_t, FITS
    use run_state, only: run_t, enter_stage
    use scene_types, only: scene_t
    use scene_warnings, only: warn_of_scene
@@ -24,8 +24,6 @@ contains
       type(run_t), intent(inout) :: run   !< The contacts are probed.
       logical, intent(in) :: quiet, verbose, only_check
       type(balance_t) :: balance
-      type(contact_alarm_t) :: contacts
-      type(fault_t) :: none
 
       if (.not. quiet) call announce(run, verbose)
       call find_imbalance(run, balance)
@@ -35,7 +33,7 @@ contains
       call warn_of_scene(scene, run%model, run%tension, balance)
       if (.not. only_check) return
       call enter_stage(run, 1)
-      call contacts%hear(STAGE_BEGINS, run, none)
+      call warn_of_overlaps(run)
    end subroutine report_start
 
    !> Says what is going to run.

@@ -7,9 +7,10 @@ module water_balance
    use springs, only: water_through_dashpots
    use faults, only: fault_t
    use kinds, only: wp
-   use porous_domain, only: pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
+   use porous_domain, only: means_t, means_over, strain_of, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use run_observer, only: observer_t, STEP, STAGE_ENDS
    use run_state, only: run_t
+   use step_balance, only: mean_outflow
    use texts, only: short
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use warnings, only: print_warning
@@ -31,7 +32,6 @@ module water_balance
       real(wp) :: moved = 0.0_wp      !< Water through boundaries, in and out [m3].
    end type water_t
 
-   !> It stands behind the ledger, which sets the flows out.
    type, extends(observer_t) :: water_alarm_t
       type(water_t) :: water
    contains
@@ -57,7 +57,7 @@ contains
    subroutine hear(self, event, run, fault)
       class(water_alarm_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       type(fault_t), intent(inout) :: fault
 
       if (event == STEP) call book(self, run)
@@ -67,7 +67,7 @@ contains
    !> Books the water of a step.
    subroutine book(self, run)
       class(water_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       integer :: e
 
       if (.not. run%scheme%has_rates .or. .not. run%domain%with_w) return
@@ -83,7 +83,7 @@ contains
    !> saturation out.
    subroutine look_at_missing(self, run)
       class(water_alarm_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(in) :: run
       character(:), allocatable :: of_what
       real(wp) :: missing
 
@@ -106,7 +106,8 @@ contains
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
-      real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), p(2), parts(3), n, s
+      type(means_t) :: mean
+      real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), strain(4), p(2), parts(3)
       integer :: g, at
 
       associate (node => run%domain%mesh%t6(:, e), carriers => run%domain%carriers(:run%domain%n_carriers(e), e), &
@@ -117,15 +118,14 @@ contains
       do g = 1, run%domain%rule
          at = (e - 1)*run%domain%rule + g
          associate (gp => run%domain%gauss(g, e), old => run%state, new => run%next)
-            s = 0.5_wp*(old%s(at) + new%s(at))
-            n = 0.5_wp*(old%e(at)/(1 + old%e(at)) + new%e(at)/(1 + new%e(at)))
+            mean = means_over(old, new, at)
+            strain = strain_of(gp, du)
             p = pressures_at(run%domain, e, g, rise)
-            parts(1) = s*(dot_product(gp%dn(:, 1), du(1, :)) + dot_product(gp%dn(:, 2), du(2, :)) &
-                          + dot_product(gp%n_over_r, du(1, :)))
-            parts(2) = n*(new%s(at) - old%s(at))
-            parts(3) = n*s*p(1)/run%domain%fluids%k_w
+            parts(1) = mean%s*sum(strain(:3))
+            parts(2) = mean%n*(new%s(at) - old%s(at))
+            parts(3) = mean%n*mean%s*p(1)/run%domain%fluids%k_w
             water%gained = water%gained + gp%weight*sum(parts)
-            water%turned = water%turned + gp%weight*(sum(abs(parts)) + ROUNDING*n*s)
+            water%turned = water%turned + gp%weight*(sum(abs(parts)) + ROUNDING*mean%n*mean%s)
          end associate
       end do
    end subroutine book_storage
@@ -155,7 +155,7 @@ contains
             water%received = water%received + scheme%dt*inflow
             water%moved = water%moved + scheme%dt*(abs(inflow) + abs(outflow))
          end do
-         mean = run%state%outflow + scheme%gamma_1*(run%next%outflow - run%state%outflow)
+         mean = mean_outflow(run)
          water%left = water%left + scheme%dt*(mean(1) - mean(2))
          water%received = water%received &
             - water_through_dashpots(constraint%linear, run%dofs, constraint%air, run%next%x - run%state%x)

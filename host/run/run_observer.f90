@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> Observers of a run: tables, fields, checkpoints, ledger, alarms and progress extend `observer_t` and stand in a list.
+!> Observers of a run: tables, fields, ledger, alarms and progress extend `observer_t` and stand in a list.
 !> The run tells the list what happens and knows none of them; each keeps what it needs, and exchanges with a
-!> checkpoint what a restart needs. An observer changes nothing that the run computes with.
+!> checkpoint what a restart needs. An observer reads the run and changes nothing of it.
 module run_observer
    use archive, only: archive_t
    use faults, only: fault_t
@@ -10,7 +10,7 @@ module run_observer
    use wall_clock, only: clock, add_elapsed
    implicit none (type, external)
    private
-   public :: observer_t, observers_t, slot_t
+   public :: observer_t, observers_t
    public :: FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, ENDS
 
    ! Events that observers are told.
@@ -28,11 +28,9 @@ module run_observer
    integer, parameter :: UP_TO_A_FAULT(*) = [FITS, BEGINS, TAKEN_OVER]
    integer, parameter :: TIMED(*) = [BEGINS, TAKEN_OVER, STAGE_ENDS]   !< Events whose time is that of output.
 
-   !> A fault ends the run. Contacts of the run may be probed; otherwise an observer leaves the run as it is, but for
-   !> the factors and slopes that a checkpoint makes it forget.
+   !> A fault of an observer ends the run.
    type, abstract :: observer_t
       character(:), allocatable :: folder   !< Folder of the results; not allocated: no file is written.
-      type(slot_t), pointer :: earlier(:) => null()   !< Observers before it in the list, for a checkpoint.
    contains
       procedure :: exchange                 !< With a checkpoint; nothing unless an observer has its own.
       procedure(hear_i), deferred :: hear
@@ -44,7 +42,7 @@ module run_observer
          import :: observer_t, run_t, fault_t
          class(observer_t), intent(inout) :: self
          integer, intent(in) :: event
-         type(run_t), intent(inout) :: run
+         type(run_t), intent(in) :: run
          type(fault_t), intent(inout) :: fault
       end subroutine hear_i
    end interface
@@ -62,6 +60,7 @@ module run_observer
    contains
       procedure :: add
       procedure :: tell
+      procedure :: exchange => exchange_all
    end type observers_t
 contains
    !> Exchanges with a checkpoint what the observer needs to go on after a restart.
@@ -69,6 +68,17 @@ contains
       class(observer_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
    end subroutine exchange
+
+   !> Exchanges with a checkpoint what every observer keeps.
+   subroutine exchange_all(self, archive)
+      class(observers_t), intent(inout) :: self
+      class(archive_t), intent(inout) :: archive
+      integer :: i
+
+      do i = 1, size(self%list)
+         call self%list(i)%observer%exchange(archive)
+      end do
+   end subroutine exchange_all
 
    !> Puts an observer at the end of the list.
    subroutine add(self, observer)
@@ -84,9 +94,9 @@ contains
 
    !> Tells the observers an event. The first fault counts, and one that there is already stays.
    subroutine tell(self, event, run, fault)
-      class(observers_t), intent(inout), target :: self
+      class(observers_t), intent(inout) :: self
       integer, intent(in) :: event
-      type(run_t), intent(inout) :: run
+      type(run_t), intent(inout) :: run   !< The time that observers take is added.
       type(fault_t), intent(inout) :: fault
       type(fault_t) :: one
       real(wp) :: t0
@@ -98,7 +108,6 @@ contains
          if (fault%code /= 0 .and. any(event == UP_TO_A_FAULT)) exit
          k = merge(self%begun + 1 - i, i, event == ENDS)
          one = fault_t()
-         self%list(k)%observer%earlier => self%list(:k - 1)
          call self%list(k)%observer%hear(event, run, one)
          if (fault%code == 0) fault = one
          if (event == BEGINS .and. fault%code == 0) self%begun = k

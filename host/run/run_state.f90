@@ -39,23 +39,19 @@ module run_state
       real(wp), allocatable :: x_first(:, :)     !< Unknowns at the start of the stage.
    end type control_state_t
 
-   !> News for observers, beside what the run computes with.
-   type :: news_t
-      logical :: last = .false.            !< The stage ends with the step that was accepted.
-      logical :: complete = .false.        !< A stage that ends has come to its end; else a fault has ended the run.
-      real(wp) :: localised = 0.0_wp       !< Share of the shear work without ellipticity [-], set by its observer.
-      real(wp) :: contact_work = 0.0_wp    !< Work done on contacts so far [kJ], set by the ledger, which stands first.
-   end type news_t
-
    type, extends(problem_t) :: run_t
       type(term_box_t), allocatable :: terms(:)   !< Terms of the model, with what they keep from step to step.
       type(tension_t) :: tension               !< Tension in the initial state, for a warning.
       type(control_state_t) :: control         !< Control of the time step, in stages that choose it.
       integer :: steps = 0, iterations = 0, cuts = 0
       integer(int64) :: rate_evaluations = 0   !< Rate evaluations of the material.
+      logical :: last = .false.                !< The stage ends with the step that was accepted.
+      logical :: complete = .false.            !< A stage that ends has come to its end; else a fault has ended the run.
+      !> Mean forces of contacts and of the springs of terms over the accepted step [kN]. (unknowns)
+      real(wp), allocatable :: mean_force(:)
       real(wp) :: dissipated = 0.0_wp          !< Energy that terms dissipated in the last accepted step [kJ].
-      real(wp) :: seconds_output = 0.0_wp      !< Wall time of the observers.
-      type(news_t) :: news
+      real(wp) :: seconds_output = 0.0_wp      !< Wall time of observers and checkpoints.
+      real(wp) :: kept = 0.0_wp                !< When the last checkpoint was written, on the wall clock [s].
    end type run_t
 contains
    !> Takes a run to a stage, and sets which contacts act in it.

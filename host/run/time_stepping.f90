@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Runs the stages of a model: steps, and cuts with exact restoration. Observers are told what happens.
 module time_stepping
+   use checkpoints, only: keep_run
    use kinds, only: wp
    use faults, only: fault_t
    use convergence, only: control_t
@@ -10,10 +11,12 @@ module time_stepping
    use run_state, only: run_t, enter_stage
    use sparse_factors, only: release
    use newton_step, only: follow_newton, roughness
+   use step_balance, only: balance_step
    use step_attempt, only: begin_stage, try_step
    use step_size, only: negligible_changes, next_step, keep_step, is_over
    use step_landings, only: LAST_STEP
    use unknown_fields, only: DISPLACEMENTS
+   use wall_clock, only: clock
    implicit none (type, external)
    private
    public :: run_stages
@@ -30,10 +33,11 @@ contains
 
       if (run%steps > 0) call observers%tell(FITS, run, fault)
       call observers%tell(BEGINS, run, fault)
+      run%kept = clock()
       do i = max(1, run%at%stage), size(run%model%stages)
          if (fault%code /= 0) exit
          call run_stage(i, run, observers, fault)
-         run%news%complete = fault%code == 0
+         run%complete = fault%code == 0
          call observers%tell(STAGE_ENDS, run, fault)
       end do
       call observers%tell(ENDS, run, fault)
@@ -83,9 +87,10 @@ contains
       integer :: i
 
       associate (at => run%at, stage => run%stage)
-         run%news%last = at%t_start + stage%duration - run%next%time <= LAST_STEP*run%scheme%dt
+         run%last = at%t_start + stage%duration - run%next%time <= LAST_STEP*run%scheme%dt
          at%step = at%step + 1
          run%steps = run%steps + 1
+         call balance_step(run)
          call observers%tell(STEP, run, verdict)
          run%dissipated = 0.0_wp
          do i = 1, size(run%terms)
@@ -102,6 +107,7 @@ contains
          end if
       end associate
       call observers%tell(TAKEN_OVER, run, fault)
+      if (fault%code == 0) call keep_run(run, observers, fault)
       if (fault%code == 0) fault = verdict
    end subroutine close_step
 

@@ -104,12 +104,12 @@ def test_threads_and_checkpoints_leave_the_share_as_it_is():
     check("it is told with a viscosity as well", "shear localises" in told.stderr, told.stderr)
     for name in ("ledger.csv", "histories.csv"):
         check(f"two threads: {name}", (one / name).read_bytes() == (two / name).read_bytes())
-    # A run that is taken up writes the same bytes and says it again.
+    # A run that is taken up writes the same bytes; what it has said before its checkpoint, it says at its end alone.
     whole, folder = sample("whole", every=60)
     bytes_ = (folder / "ledger.csv").read_bytes()
     again, _ = sample("whole", "--restart", str(folder / "checkpoint.h5"), every=60)
-    check("a run that is taken up", (folder / "ledger.csv").read_bytes() == bytes_ and "shear localises" in again.stderr
-          and re.search(r"since \S+ s", again.stderr)[0] == re.search(r"since \S+ s", whole.stderr)[0], again.stderr)
+    check("a run that is taken up", "shear localises" in whole.stderr and "shear localises" not in again.stderr
+          and (folder / "ledger.csv").read_bytes() == bytes_, again.stderr)
 
 
 @pytest.mark.skipif(preset == "sanitize", reason=NO_LIBRARY)

@@ -620,6 +620,29 @@ def test_ground_that_swings_more_than_twenty_times_is_told_once():
     check("a mass that is let go on a buffer is", len(told_of_cycles(on_spring)) == 1, on_spring)
 
 
+def test_a_restart_tells_no_warning_twice():
+    # The strain is told at the end of the first stage, in step 1; the checkpoint is that of step 2 of 3.
+    scene = work / "taken_up.nml"
+    scene.write_text("""&scene name = 'b' geometry = 'plane_strain' fields = 'u' checkpoint_steps = 2 /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'm' young = 1e4 poisson = 0.25 /
+&region material = 'm' void_ratio = 0 /
+&stage name = 'one' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'two' analysis = 'static' duration = 1 dt = 0.5 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'pressure' value = 1126.4 /
+""")
+    whole, taken_up = (subprocess.run([host, scene, "--output", work / "taken_up", *words], capture_output=True,
+                                      text=True, env=environment)
+                       for words in ((), ("--restart", work / "taken_up/checkpoint.h5")))
+    check("a run tells it once", whole.stderr.count("the ground is strained") == 1, whole.stderr)
+    check("one that is taken up does not", taken_up.returncode == 0 and "strained" not in taken_up.stderr,
+          taken_up.stderr)
+    ends = [done.stdout.partition("Warnings of this run:")[2] for done in (whole, taken_up)]
+    check("the end of both repeats it", ends[0].count("the ground is strained") == 1 and ends[0] == ends[1], ends)
+
+
 def test_turns_are_counted_over_a_restart():
     text = PULSES.format(repeats=11).replace("gravity = 9.81", "gravity = 9.81 checkpoint_steps = 21")
     start("turns", text)

@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
-!> Observer that writes checkpoints, the complete state of a run in one file, and a run from one. Every part of a run
-!> and every observer exchanges what it keeps by itself.
+!> Checkpoints, the complete state of a run in one file, and a run from one. Every part of a run and every observer
+!> exchanges what it keeps by itself.
 module checkpoints
    use archive, only: archive_t
    use archive_file, only: archive_file_t, archive_kind_t, create_archive, open_archive, close_archive
    use run_state, only: run_t, exchange_run
-   use run_observer, only: observer_t, observers_t, slot_t, BEGINS, TAKEN_OVER
-   use wall_clock, only: clock
+   use run_observer, only: observers_t
+   use wall_clock, only: clock, add_elapsed
+   use warnings, only: exchange_warnings
    use interrupts, only: interrupted, EXIT_INTERRUPTED
    use kinds, only: wp
    use model_types, only: model_t
@@ -14,57 +15,44 @@ module checkpoints
    use texts, only: short, whole
    implicit none (type, external)
    private
-   public :: checkpoint_observer_t, read_checkpoint
+   public :: keep_run, read_checkpoint
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
-   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '21', &
+   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '22', &
       CHECKPOINT//' of a run', &
       ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
       'Finish the run with the program that began it.')
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
-
-   !> It stands behind the observers that it keeps.
-   type, extends(observer_t) :: checkpoint_observer_t
-      real(wp) :: last = 0.0_wp   !< When it was written, on the wall clock [s].
-   contains
-      procedure :: hear
-   end type checkpoint_observer_t
 contains
-   !> Begins to count the time to the first checkpoint, and keeps the run after its steps. Faults: those of keep_run.
-   subroutine hear(self, event, run, fault)
-      class(checkpoint_observer_t), intent(inout) :: self
-      integer, intent(in) :: event
+   !> Writes a checkpoint of a run that has a folder where it is due, and ends a run that is interrupted. A run that is
+   !> taken up here has no factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be
+   !> written; EXIT_INTERRUPTED.
+   subroutine keep_run(run, observers, fault)
       type(run_t), intent(inout) :: run
+      type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-
-      if (event == BEGINS) self%last = clock()
-      if (event == TAKEN_OVER) call keep_run(self, run, fault)
-   end subroutine hear
-
-   !> Writes a checkpoint where it is due, and ends a run that is interrupted. A run that is taken up here has no
-   !> factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be written; EXIT_INTERRUPTED.
-   subroutine keep_run(self, run, fault)
-      class(checkpoint_observer_t), intent(inout) :: self
-      type(run_t), intent(inout) :: run
-      type(fault_t), intent(inout) :: fault
+      real(wp) :: t0
       logical :: due
 
+      if (.not. allocated(observers%folder)) return
+      t0 = clock()
       due = interrupted()
       associate (steps => run%model%output%checkpoint_steps, seconds => run%model%output%checkpoint_seconds)
          if (steps > 0) due = due .or. mod(run%steps, steps) == 0
-         if (seconds > 0.0_wp) due = clock() - self%last >= seconds .or. due
+         if (seconds > 0.0_wp) due = t0 - run%kept >= seconds .or. due
       end associate
       if (due) then
-         call write_checkpoint(self%folder, run, self%earlier, fault)
-         self%last = clock()
+         call write_checkpoint(observers%folder, run, observers, fault)
+         run%kept = clock()
          run%system%factored = .false.
          run%assembly%slopes%known = .false.
+         call add_elapsed(run%seconds_output, t0)
       end if
       if (fault%code == 0 .and. interrupted() .and. &
-          .not. (run%news%last .and. run%at%stage == size(run%model%stages))) call raise(fault, &
+          .not. (run%last .and. run%at%stage == size(run%model%stages))) call raise(fault, &
          EXIT_INTERRUPTED, 'Interrupted at '//short(run%state%time)//' s: the results up to there are complete; '// &
-         '--restart '//self%folder//'/'//CHECKPOINT//' goes on.')
+         '--restart '//observers%folder//'/'//CHECKPOINT//' goes on.')
    end subroutine keep_run
 
    !> Writes the complete state of a run to checkpoint.h5, in place of an older one. Fault EXIT_OUTPUT: a table or the
@@ -72,7 +60,7 @@ contains
    subroutine write_checkpoint(folder, run, observers, fault)
       character(*), intent(in) :: folder
       type(run_t), intent(inout) :: run   !< Stays as it is; a restart would restore it.
-      type(slot_t), intent(inout) :: observers(:)
+      type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
       type(archive_file_t) :: archive
       logical :: good
@@ -80,7 +68,8 @@ contains
       call create_archive(folder//'/'//CHECKPOINT, KIND_OF_FILE, archive)
       call exchange_scene(folder, run%model, archive, fault)
       call exchange_run(run, archive)
-      call exchange_observers(observers, archive)
+      call observers%exchange(archive)
+      call exchange_warnings(archive)
       call close_archive(archive, good)
       if (.not. good) call raise(fault, EXIT_OUTPUT, folder//'/'//CHECKPOINT//' cannot be written; is the '// &
                                  'disk full? The one before is untouched: make room and use --restart.')
@@ -100,20 +89,11 @@ contains
       if (fault%code /= 0) return
       call exchange_scene(path, run%model, archive, fault)
       if (fault%code == 0) call exchange_run(run, archive)
-      if (fault%code == 0) call exchange_observers(observers%list, archive)
+      if (fault%code == 0) call observers%exchange(archive)
+      if (fault%code == 0) call exchange_warnings(archive)
       call close_archive(archive, good)
       if (fault%code == 0 .and. .not. good) call raise(fault, EXIT_RESTART, path//DAMAGED)
    end subroutine read_checkpoint
-
-   subroutine exchange_observers(list, archive)
-      type(slot_t), intent(inout) :: list(:)
-      class(archive_t), intent(inout) :: archive
-      integer :: i
-
-      do i = 1, size(list)
-         call list(i)%observer%exchange(archive)
-      end do
-   end subroutine exchange_observers
 
    !> Exchanges what tells scenes apart. Fault EXIT_RESTART: the archive belongs to another scene, and the first group
    !> that differs is named; or it is damaged.
