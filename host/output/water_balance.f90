@@ -7,7 +7,7 @@ module water_balance
    use springs, only: water_through_dashpots
    use faults, only: fault_t
    use kinds, only: wp
-   use porous_domain, only: means_t, means_over, strain_of, pressures_at, is_present, COUPLED, UNDRAINED, OUTFLOWS
+   use porous_domain, only: means_t, means_over, strain_of, is_present, COUPLED, UNDRAINED, OUTFLOWS
    use run_observer, only: observer_t, STEP, STAGE_ENDS
    use run_state, only: run_t
    use step_balance, only: mean_outflow
@@ -107,23 +107,23 @@ contains
       type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
       type(means_t) :: mean
-      real(wp) :: du(DISPLACEMENTS, 6), rise(2, 6), strain(4), p(2), parts(3)
-      integer :: g, at
+      real(wp) :: du(DISPLACEMENTS, 6), rise(6), strain(4), parts(3)
+      integer :: g, at, n_p
 
       associate (node => run%domain%mesh%t6(:, e), carriers => run%domain%carriers(:run%domain%n_carriers(e), e), &
                  old => run%state, new => run%next)
          du = new%x(:DISPLACEMENTS, node) - old%x(:DISPLACEMENTS, node)
-         rise(:, :size(carriers)) = new%x(AT_P_W:, carriers) - old%x(AT_P_W:, carriers)
+         n_p = size(carriers)
+         rise(:n_p) = new%x(AT_P_W, carriers) - old%x(AT_P_W, carriers)   ! what is given of a pressure stays
       end associate
       do g = 1, run%domain%rule
          at = (e - 1)*run%domain%rule + g
          associate (gp => run%domain%gauss(g, e), old => run%state, new => run%next)
             mean = means_over(old, new, at)
             strain = strain_of(gp, du)
-            p = pressures_at(run%domain, e, g, rise)
             parts(1) = mean%s*sum(strain(:3))
             parts(2) = mean%n*(new%s(at) - old%s(at))
-            parts(3) = mean%n*mean%s*p(1)/run%domain%fluids%k_w
+            parts(3) = mean%n*mean%s*dot_product(gp%m(:n_p), rise(:n_p))/run%domain%fluids%k_w
             water%gained = water%gained + gp%weight*sum(parts)
             water%turned = water%turned + gp%weight*(sum(abs(parts)) + ROUNDING*mean%n*mean%s)
          end associate

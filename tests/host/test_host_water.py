@@ -4,6 +4,8 @@ import os
 import re
 import subprocess
 
+import h5py
+
 from checking import at_length, build, check, work
 import tables  # noqa: E402
 
@@ -95,6 +97,24 @@ def test_water_that_a_stage_loses_is_told_whatever_lost_it():
                        ("still", COLUMN.replace("value = -1e-6", "value = 0"))):
         _, errors = run(name, text)
         check(f"{name}: nothing is told", told(errors) == [], errors)
+
+
+def test_undrained_water_at_rest_does_not_move():
+    # Of the pressure of an undrained element what differs from its mean is given, and does not rise.
+    text = """&scene name = 'rest' checkpoint_steps = 5 geometry = 'plane_strain' fields = 'u-p_w' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 2 /
+&elastic name = 'soil' young = 1e4 poisson = 0.2 /
+&region material = 'soil' void_ratio = 0.8 drainage = 'undrained' /
+&initial p_w = 10 p_w_slope = -10 /
+&stage name = 'wait' analysis = 'quasi_static' duration = 5 dt = 1 steps = 'given' /
+&fix group = 'all' field = 'u_r' /
+&fix group = 'all' field = 'u_z' /
+&point name = 'top' r = 0 z = 1 /
+"""
+    folder, _ = run("rest", text)
+    with h5py.File(folder / "checkpoint.h5") as file:
+        moved = file["water_turned"][0]
+    check("nothing has moved", 0 < moved < 1e-9*0.8/1.8, moved)
 
 
 def test_water_that_the_ground_does_not_hold_is_told():
