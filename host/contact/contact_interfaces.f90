@@ -21,6 +21,9 @@ module contact_interfaces
    public :: contacts_t, contact_interface_t, surface_t, surface_of, shortest_edge, plate_link_t, new_interface, &
              tie_to_plate, plate_surface, tangential_tractions, probe_copy
 
+   real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of a displacement: of the node, and of its place by three
+                                               !< unknowns.
+
    !> A boundary with numbers of its own.
    type :: surface_t
       integer, allocatable :: node(:)       !< Nodes of the surface in the mesh; a plate has none.
@@ -187,10 +190,12 @@ contains
       real(wp), intent(in) :: x(:, :)
       integer, intent(in) :: corrections
       logical, intent(in) :: with_slopes
+      real(wp) :: rounding(size(self%interfaces))   !< Rounding of the forces of springs [kN].
       integer :: i
 
       good = .true.
       self%active = 0
+      rounding = 0.0_wp
       do i = 1, size(self%interfaces)
          associate (t => self%interfaces(i))
             if (.not. t%acts) cycle
@@ -204,11 +209,14 @@ contains
             if (allocated(t%plate%motion)) call gather_on_plate(t%geometry, t%result, t%plate%motion, &
                                                                  t%master%x0, motion_of(t%plate, x), t%on_plate)
             self%active = self%active + count(t%result%active)
+            if (allocated(t%spring)) rounding(i) = ROUNDINGS*epsilon(1.0_wp)*norm2(spread(t%spring, 1, DISPLACEMENTS) &
+                                                                              *x(:DISPLACEMENTS, t%slave%node))
          end associate
       end do
       self%corrections = corrections
       self%unsettled = any([(self%interfaces(i)%acts .and. self%interfaces(i)%result%turns, i=1, &
                              size(self%interfaces))])
+      self%rounding = norm2(rounding)
    end function evaluate
 
    function message(self) result(text)

@@ -341,7 +341,7 @@ contains
                   end select
                end associate
             end do
-            call orient(mesh, edges)
+            edges = oriented(mesh, edges)
             if (name%name /= 'all') then
                call add_group(mesh, trim(name%name), elements, edges, nodes)
             else if (size(elements) < size(t6, 2)) then
@@ -382,17 +382,25 @@ contains
       if (a(1)*b(2) - a(2)*b(1) < 0.0_wp) turned = nodes([1, 3, 2, 6, 5, 4])
    end function counter_clockwise
 
-   !> Turns edges so that their triangle lies on the left, of two the first one.
-   subroutine orient(mesh, edges)
+   !> Edges of a group, each once, with their triangle on the left, of two the first one. Curves that lie on each other
+   !> have the same edges.
+   function oriented(mesh, edges) result(once)
       type(mesh_t), intent(in) :: mesh
-      integer, intent(inout) :: edges(:, :)
+      integer, intent(in) :: edges(:, :)
+      integer, allocatable :: once(:, :)
+      logical :: known(size(mesh%x, 2)), is_new(size(edges, 2))
       integer :: k
 
+      known = .false.
+      once = edges
       associate (beside => triangles_beside(mesh%t6, edges))
          do k = 1, size(edges, 2)
+            is_new(k) = .not. known(edges(3, k))
+            known(edges(3, k)) = .true.
             if (beside(2, k) > 0 .and. (beside(1, k) == 0 .or. beside(2, k) < beside(1, k))) &
-               edges(1:2, k) = edges([2, 1], k)
+               once(1:2, k) = edges([2, 1], k)
          end do
       end associate
-   end subroutine orient
+      once = once(:, pack([(k, k=1, size(edges, 2))], is_new))
+   end function oriented
 end module gmsh_reader

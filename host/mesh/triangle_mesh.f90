@@ -67,19 +67,23 @@ contains
    pure function triangles_beside(t6, edges) result(beside)
       integer, intent(in) :: t6(:, :), edges(:, :)   !< (6, elements), (3, edges)
       integer :: beside(2, size(edges, 2))
-      integer, allocatable :: from(:), at_middle(:, :)
-      integer :: e, k
+      integer, allocatable :: both(:, :), begins(:)   !< Of a middle node: its triangles; where it begins in the first.
+      integer :: e, k, n
 
-      k = max(maxval(t6), maxval(edges))
-      allocate (from(k), at_middle(2, k), source=0)
-      from(edges(3, :)) = edges(1, :)
+      n = max(maxval(t6), maxval(edges))
+      allocate (both(2, n), begins(n), source=0)
       do e = 1, size(t6, 2)
          do k = 1, 3
             associate (middle => t6(k + 3, e))
-               if (from(middle) > 0) at_middle(merge(1, 2, from(middle) == t6(k, e)), middle) = e
+               both(merge(1, 2, both(1, middle) == 0), middle) = e
+               if (both(2, middle) == 0) begins(middle) = t6(k, e)
             end associate
          end do
       end do
-      beside = at_middle(:, edges(3, :))
+      do k = 1, size(edges, 2)
+         associate (middle => edges(3, k))
+            beside(:, k) = both(merge([1, 2], [2, 1], begins(middle) == edges(1, k)), middle)
+         end associate
+      end do
    end function triangles_beside
 end module triangle_mesh

@@ -45,6 +45,7 @@ module newton_step
       real(wp), allocatable :: touched(:)      !< Forces of contacts before, where steps are measured by their change.
       real(wp) :: norm_0 = -1.0_wp             !< Norm of the first residual, or of the second where it is larger.
       real(wp) :: begun = 0.0_wp               !< Norm that a reduction is a share of.
+      real(wp) :: rounded(FIELDS) = 0.0_wp     !< Change of the balances by the rounding of the unknowns [kN, m3/s].
       real(wp) :: t0 = 0.0_wp                  !< Wall clock when the present part of the work began [s].
       logical :: with_slopes = .true.          !< The next pass makes the slopes too.
       logical :: guessed = .false.             !< The first iterate is a guess, not the state before.
@@ -251,13 +252,19 @@ contains
       end associate
    end subroutine make_equations
 
-   !> Notes what the equations of an iterate leave: reactions, and the size of the first residual.
+   !> Notes what the equations of an iterate leave: reactions, and the forces that rounding leaves of ties.
    subroutine note_equations(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
 
-      solution%system%reaction = -at%rhs
-      if (solution%log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
+      associate (assembly => solution%assembly, system => solution%system)
+         system%reaction = -at%rhs
+         assembly%unresolved = at%rounded(1)
+         ! Roundings of the unknowns are found once, of the first iterate, where a plate may not have moved yet.
+         if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1))
+         assembly%unresolved = assembly%unresolved/solution%newton%tolerance
+         if (solution%log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
+      end associate
    end subroutine note_equations
 
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
@@ -306,15 +313,14 @@ contains
    !> nothing leaves the rounding of the forces that it asked for, and no other.
    subroutine find_roundings(solution, at)
       type(solution_t), intent(inout) :: solution
-      type(iterate_t), intent(in) :: at
-      real(wp) :: of_unknowns(FIELDS)   !< Change of the balances by the rounding of the unknowns [kN, m3/s].
+      type(iterate_t), intent(inout) :: at
 
-      associate (system => solution%system, tolerance => solution%newton%tolerance)
+      associate (system => solution%system, assembly => solution%assembly, tolerance => solution%newton%tolerance)
          system%rounding = rounding_in(solution%scheme%has_inertia)/tolerance*asked_for(solution%dofs, at%rhs)
          system%rounding(AT_P_C) = max(system%rounding(AT_P_C), rounding_of_saturation(solution)/tolerance)
-         of_unknowns = rounding_of_unknowns(solution)
-         system%rounding = max(system%rounding, of_unknowns/tolerance)
-         solution%assembly%unresolved = of_unknowns(1)/tolerance
+         at%rounded = rounding_of_unknowns(solution)
+         system%rounding = max(system%rounding, at%rounded/tolerance)
+         assembly%unresolved = max(assembly%unresolved, at%rounded(1)/tolerance)
       end associate
    end subroutine find_roundings
 

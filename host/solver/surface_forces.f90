@@ -13,6 +13,7 @@ module surface_forces
       ! Outcome of the last evaluation.
       integer :: active = 0              !< Nodes that are in contact.
       logical :: unsettled = .false.     !< Part of what the iterate asks for is held back: it is no solution yet.
+      real(wp) :: rounding = 0.0_wp      !< Rounding of small differences of large displacements, times stiffness [kN].
    contains
       procedure(act_i), deferred :: act
       procedure(evaluate_i), deferred :: evaluate

@@ -185,8 +185,9 @@ def test_a_run_is_given_a_step_tolerance_and_no_accuracy():
                         (("--step-tolerance", "2"), "outside")):
         done = run(TERZAGHI, work / "none", *words)
         check(f"{words}: refused", done.returncode == 2 and said in done.stderr, done.stderr)
-    for key, said in (("accuracy = 1e-2", "step_tolerance"), ("ordering = 'metis'", "leave it out"),
-                      ("budget = 9", "&scene has no key budget")):
+    for key, said in (("accuracy = 1e-2", "step_tolerance"), ("mesh = 'auto'", "mud_study accuracy"),
+                      ("budget = 9", "mud_study accuracy"), ("ordering = 'metis'", "leave it out"),
+                      ("effects = 'auto'", "mud_study effects")):
         scene = written("old", TERZAGHI.read_text().replace("&scene\n", f"&scene\n   {key}\n"))
         done = run(scene, work / "none")
         check(f"{key}: told with the word of today", done.returncode == 2 and said in done.stderr
