@@ -5,7 +5,7 @@ module acting_places
    use exit_codes, only: EXIT_GROUP
    use faults, only: fault_t, raise
    use kinds, only: wp
-   use model_types, only: model_t, action_t
+   use model_types, only: model_t, action_t, SPACINGS
    use scene_parts, only: place_of, PRESCRIBED_OF_BODY
    use texts, only: short, whole
    use triangle_mesh, only: group_of_t, triangles_beside
@@ -182,17 +182,19 @@ contains
       integer, intent(in) :: number                !< Of the stage.
       logical, intent(in), optional :: throughout
       logical :: given(PRESCRIBED_OF_BODY, size(model%domain%mesh%x, 2)), whole
+      real(wp) :: finish, close   !< Of the stage [s], with what a sum of stages may miss it by.
       integer :: i
 
       given = .false.
       whole = .false.
       if (present(throughout)) whole = throughout
       associate (stage => model%stages(number))
+         finish = stage%start + stage%duration
+         close = SPACINGS*spacing(finish)
          do i = 1, size(model%fixes)
             associate (fix => model%fixes(i))
                if (.not. fix%in_stage(number)) cycle
-               if (whole .and. (fix%limits .or. fix%from > stage%start .or. &
-                                fix%until < stage%start + stage%duration)) cycle
+               if (whole .and. (fix%limits .or. fix%from > stage%start + close .or. fix%until < finish - close)) cycle
                given(merge(PRESCRIBED_OF_BODY, fix%field, fix%of_body), &
                      model%domain%mesh%groups(fix%group)%nodes) = .true.
             end associate

@@ -4,7 +4,8 @@
 module boundary_conditions
    use kinds, only: wp
    use generalised_alpha, only: scheme_t, make_scheme
-   use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of
+   use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of, &
+      SPACINGS
    use prescribed_values, only: constraint_t, begin_sides, is_released
    use scene_parts, only: PRESCRIBED_P_A
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
@@ -12,10 +13,9 @@ module boundary_conditions
    private
    public :: new_constraint, constrain_step, complete_constraint, acts, follow_accelerations, &
              starting_accelerations, prescribing_fixes, forces_of_supports
-   public :: load_at, force_of, plate_loads, SPACINGS
+   public :: load_at, force_of, plate_loads
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
-   real(wp), parameter :: SPACINGS = 8.0_wp       !< Of numbers, by which a sum of stages may miss it; a step adds one.
 contains
    !> Nothing prescribed, nothing loaded; plates have their mass. Extents: see constraint_t.
    function new_constraint(model) result(constraint)

@@ -25,7 +25,9 @@ module model_types
    public :: model_t, problem_t, term_t, term_box_t
    public :: factor_at, factors_of, gravity_at, value_at, unknowns_of, share_over
    public :: action_t, acting_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, &
-             given_region_t, curve_t
+             given_region_t, curve_t, SPACINGS
+
+   real(wp), parameter :: SPACINGS = 8.0_wp   !< Of numbers, by which a sum of stages may miss a time; a step adds one.
 
    !> Something that acts on a group of the mesh, for checks and warnings that ask no more of it.
    type, extends(scene_item_t) :: action_t

@@ -4,12 +4,11 @@
 module start_look
    use kinds, only: wp, PI
    use acting_places, only: nodes_of_ground, given_in
-   use boundary_conditions, only: SPACINGS
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
    use warnings, only: print_warning
    use start_findings, only: balance_t
-   use model_types, only: model_t, factor_at, factors_of, value_at, fix_t, plate_t
+   use model_types, only: model_t, factor_at, factors_of, value_at, fix_t, plate_t, SPACINGS
    use porous_domain, only: COUPLED, DRAINED
    use scene_parts, only: place_of, LOAD_AIR, PRESCRIBED_P_A
    use texts, only: short, whole

@@ -71,8 +71,8 @@ contains
       end select
    end subroutine hear
 
-   !> Books a step, and tells a share above TOLD_SHARE, once, on standard error. Points
-   !> are looked at in parallel, and added up in their order.
+   !> Books a step, and tells a share above TOLD_SHARE, once, on standard error. Points are looked at in parallel, and
+   !> added up in their order.
    subroutine book(self, run)
       class(localisation_observer_t), intent(inout) :: self
       type(run_t), intent(in) :: run
@@ -100,7 +100,7 @@ contains
       if (lost(worst)) call least_determinant(determinant_of(run%assembly%slopes%strain(:, :, worst)), least, &
                                               self%normal)
       self%share = self%localised/max(self%shear, tiny(1.0_wp))
-      if (self%is_above .or. self%share <= TOLD_SHARE) return
+      if (self%is_above .or. .not. self%share > TOLD_SHARE) return
       self%is_above = .true.
       self%since = run%next%time
       call tell(self, run, worst)
