@@ -67,7 +67,7 @@ contains
    pure function triangles_beside(t6, edges) result(beside)
       integer, intent(in) :: t6(:, :), edges(:, :)   !< (6, elements), (3, edges)
       integer :: beside(2, size(edges, 2))
-      integer, allocatable :: both(:, :), begins(:)   !< Of a middle node: its triangles; where it begins in the first.
+      integer, allocatable :: both(:, :), begins(:)   !< Triangles at a middle node; where the side begins in the first.
       integer :: e, k, n
 
       n = max(maxval(t6), maxval(edges))
