@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Runs the stages of a model: steps, and cuts with exact restoration. Observers are told what happens.
 module time_stepping
-   use checkpoints, only: keep_run
    use kinds, only: wp
    use faults, only: fault_t
    use convergence, only: control_t
@@ -107,7 +106,7 @@ contains
          end if
       end associate
       call observers%tell(TAKEN_OVER, run, fault)
-      if (fault%code == 0) call keep_run(run, observers, fault)
+      if (fault%code == 0 .and. associated(observers%keep)) call observers%keep(run, observers, fault)
       if (fault%code == 0) fault = verdict
    end subroutine close_step
 
