@@ -18,6 +18,7 @@ KINDS = {
     "manufactured": "a solution is chosen and the loads that it needs are derived",
     "code-to-code": "another program, or another implementation of the same equations",
     "experiment": "laboratory data, reported and not tuned",
+    "fitted": "laboratory data to which parameters were chosen: shows what the model can reach, and predicts nothing",
     "conservation": "balances of mass, momentum or energy that every solution has to satisfy",
     "robustness": "whatever the input, nothing is lost and nothing is silently wrong",
     "regression": "earlier results of this program: proves only that they are unchanged",

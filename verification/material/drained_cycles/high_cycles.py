@@ -16,8 +16,8 @@ E_REF, AMPL_REF, P_REF, FRICTION = 1.054, 1e-4, 100.0, math.radians(33.1)
 VOIDS, P = 0.80, 200.0   # of every test; mean stress [kPa]
 
 SET = ROOT / "drivers/materials/karlsruhe_cyclic.nml"
-SETS = {"without options": {"c_chi": 0.0, "isotropic": 1.0}, "cyclic preloading": {"isotropic": 1.0},
-        "and isotropic memory": {}, "and s_chi 0.25": {"s_chi": 0.25}}
+SETS = {"isotropic 1 and c_chi 0": {"c_chi": 0.0, "isotropic": 1.0}, "isotropic 1": {"isotropic": 1.0}, "as shipped": {},
+        "s_chi 0.25": {"s_chi": 0.25}}
 CASES = ((0.0, 20.0), (0.0, 40.0), (150.0, 40.0))   # q at the centre, amplitude [kPa]
 MARKS = (1, 3, 10, 30, 100, 300, 1000)
 TOLD = (10, 100, 1000)

@@ -18,7 +18,7 @@ PAGE = Page(
     seconds=6, quick=1, pictures=("drained_cycles.png", "high_cycles.png"))
 MAKES = (Script("make_results.py", ("results.csv",), 18),)
 
-# What preloading leaves of it: Toyoura sand with the number that Karlsruhe sand has by default.
+# What preloading leaves of it: Toyoura sand, to which nobody has fitted it, with a number of the size that Karlsruhe sand has (0.165).
 PRELOADED = "with preloading"
 
 

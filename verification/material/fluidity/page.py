@@ -11,12 +11,12 @@ from tools.page import Page, Script, Tolerance
 from tools.pictures import COLOURS
 
 PAGE = Page(
-    claim="after liquefaction the strain of stress cycles grows, and strain cycles of 1 % keep p' low, by the option `c_ell` alone; neither tolerance nor "
-          "increment nor scheme nor unit decides it, and the stress path stays that without it",
-    kind=("experiment", "regression", "study"),
+    claim="with fluidity stress cycles strain liquefied sand ten times as far on the same stress path, and neither tolerance nor increment nor scheme "
+          "decides how far; strain cycles of 1 % leave p' below 0.15 of its start from the second on, for which `c_ell` was chosen",
+    kind=("fitted", "regression", "study"),
     input="undrained triaxial stress and strain cycles of `karlsruhe_cyclic`, simple shear at constant volume of the default set; `c_ell` 0 and 600, "
           "`ell_max`, `p_ell`, `r_ell` at their defaults",
-    reference="Wichtmann & Triantafyllidis (2016), p' at the reversals of TCUE1, TCUE2 and TCUE4 (`tcue_reversals.csv`), to which only `c_ell` was chosen",
+    reference="Wichtmann & Triantafyllidis (2016), p' at the reversals of TCUE1, TCUE2 and TCUE4 (`tcue_reversals.csv`), by which `c_ell` was chosen",
     seconds=24, quick=7, pictures=("fluidity.png",))
 MAKES = (Script("make_results.py", ("results.csv",), 22),)
 
@@ -32,7 +32,8 @@ AGAIN = Tolerance("the recorded value has 5 digits; other compilers round otherw
                   absolute=1e-3)
 LITTLE = Tolerance("a hundred times what the tolerance of 1e-4 leaves of a substep", relative=0.01)
 SAME_PATH = Tolerance("p' at the turns: elastic strains are small beside plastic ones, not nothing", relative=0.05)
-TARGET = Tolerance("0.15 of the start, the least that is asked", absolute=0.0)
+TARGET = Tolerance("0.15 of the start is the least that is asked, and `c_ell` was chosen to keep it: with 300 the second cycle of TCUE2 has 0.187",
+                   absolute=0.0)
 # Other numerics: lines of &material, increment.
 NUMERICS = {"increment 5e-5": ("", 5e-5), "tolerance 1e-4": ("   tolerance = 1e-4\n", 1e-4), "tolerance 1e-7": ("   tolerance = 1e-7\n", 1e-4),
             "modified Euler": ("   scheme = 1\n", 1e-4), "Bogacki-Shampine": ("   scheme = 2\n", 1e-4),
@@ -181,6 +182,6 @@ def draw(bench, found, plt):
             model = of_model(bench.driver_text(strain_cycles(name, *STRAINED[test])))
             axes[1, 1].semilogy(list(model), list(model.values()), style, color=colour, label=f"{test}, {name}")
     axes[1, 1].axhline(0.15, color="k", lw=0.5)
-    axes[1, 1].set(xlabel="cycle", ylabel="larger p' of its reversals over the first, logarithmic", title="strain cycles of 1 %", ylim=(1e-3, 3))
+    axes[1, 1].set(xlabel="cycle", ylabel="larger p' of its reversals over the first, logarithmic", title="strain cycles of 1 %", ylim=(1e-3, 10))
     axes[1, 1].legend(fontsize=7, ncols=3)
     bench.save(figure, "fluidity.png")

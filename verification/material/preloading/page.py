@@ -14,7 +14,7 @@ from tools.pictures import COLOURS
 PAGE = Page(
     claim="what cyclic preloading changes in undrained and drained cycles of Karlsruhe fine sand, beside six cyclic tests; neither tolerance "
           "nor increment nor scheme decides the number of cycles",
-    kind=("experiment", "regression"),
+    kind=("fitted", "experiment", "regression"),
     input="undrained triaxial stress cycles about an isotropic stress, drained cycles, drained simple shear; `karlsruhe` without the option, "
           "`karlsruhe_cyclic` with it",
     reference="Wichtmann & Triantafyllidis (2016), cycles to r_u 0.95 (`calibration/data/karlsruhe_fine_sand_cyclic_TC.csv`); "

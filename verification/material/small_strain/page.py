@@ -12,7 +12,7 @@ from tools.pictures import COLOURS
 PAGE = Page(
     claim="what the published set and `karlsruhe_cyclic` give for G/G_max and damping against shear strain, beside Darendeli's curves "
           "for sand at 1 atm",
-    kind=("experiment", "regression"),
+    kind=("experiment", "fitted", "regression"),
     input="one drained cycle of simple shear about p' 100 kPa, e 0.8: shear strain +-gamma, normal stresses held; secant between the turns, "
           "damping = area of the loop/(2 pi G gamma^2); G_max by eq. (3)",
     reference="Darendeli (2001), mean curves: PI 0, OCR 1, mean effective stress 1 atm, 1 Hz, 10 cycles; an empirical model of resonant column and "
