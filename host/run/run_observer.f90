@@ -37,15 +37,6 @@ module run_observer
    end type observer_t
 
    abstract interface
-      !> Keeps a run after a step where that is due, so that another run can go on from there. Faults are those of the
-      !> keeper.
-      subroutine keep_i(run, observers, fault)
-         import :: run_t, observers_t, fault_t
-         type(run_t), intent(inout) :: run
-         type(observers_t), intent(inout) :: observers
-         type(fault_t), intent(inout) :: fault
-      end subroutine keep_i
-
       !> Does what the observer has to do at an event. Faults are those of the observer.
       subroutine hear_i(self, event, run, fault)
          import :: observer_t, run_t, fault_t
@@ -72,6 +63,17 @@ module run_observer
       procedure :: tell
       procedure :: exchange => exchange_all
    end type observers_t
+
+   abstract interface
+      !> Keeps a run after a step where that is due, so that another run can go on from there. Faults are those of the
+      !> keeper.
+      subroutine keep_i(run, observers, fault)
+         import :: run_t, observers_t, fault_t
+         type(run_t), intent(inout) :: run
+         type(observers_t), intent(inout) :: observers
+         type(fault_t), intent(inout) :: fault
+      end subroutine keep_i
+   end interface
 contains
    !> Exchanges with a checkpoint what the observer needs to go on after a restart.
    subroutine exchange(self, archive)
