@@ -21,13 +21,8 @@ module step_size
    integer, parameter :: SETTLED = 3              !< Steps after a sudden change until three rates tell of the error.
    real(wp), parameter :: START_UP_STEPS = 10.0_wp !< A change that grows with the square of time is in the first of
                                                   !< so many steps a hundredth of what it is in the last.
-   real(wp), parameter :: FIRST_SHARE = 0.04_wp   !< A pulse over the span has a quarter of its period in 1/25 of it.
-   real(wp), parameter :: FIRST_FLOW = 0.01_wp    !< Largest first step of a flow, a share of the span: with the root of
-                                                  !< time a tenth of all flows off in it.
-   real(wp), parameter :: FIRST_STATIC = 0.05_wp  !< Largest first step of a static stage, likewise: a footing on sand
-                                                  !< is 0.04 % off by it, and 1.6 % by a single step.
-   real(wp), parameter :: ROOT_SHARE = 0.25_wp    !< Share of its change by which the second step after a sudden load
-                                                  !< is in error, since flow begins with the root of time.
+   real(wp), parameter :: FIRST = 0.01_wp         !< Largest first step, a share of the span: with the root of time a
+                                                  !< tenth of all flows off in it.
    real(wp), parameter :: PLATE_SHARE = 0.01_wp   !< A plate moves the ground by a hundredth of its way at least: until
                                                   !< they meet there is no other change to compare an error with.
    real(wp), parameter :: NEWTON_SHARE = 0.1_wp   !< Share of the error of a step that is left to Newton's method: in a
@@ -58,7 +53,7 @@ contains
    !> First step: that of the scene, or a share of the span to the first break of what acts.
    real(wp) function first_step(run) result(dt)
       type(run_t), intent(in) :: run
-      real(wp) :: span
+      real(wp) :: span, share
 
       span = next_time(run, run%stage%duration) - run%state%time
       ! Nothing tells of the error of the first step of a flow: that of the scene may be shorter than what the tolerance
@@ -67,19 +62,14 @@ contains
          dt = min(run%stage%dt, run%stage%dt_max)
          return
       end if
-      if (.not. run%stage%has_rates) then
-         ! The answer of a material with a memory depends on the way there; nothing tells of the error of a single step.
-         dt = span
-         if (depends_on_path(run) .and. changes_within(run, run%state%time, run%state%time + run%stage%duration)) &
-            dt = span*min(FIRST_STATIC, max(run%stage%step_tolerance, SHORTEST))
-      else if (is_flow(run%stage)) then
+      dt = span
+      if (run%stage%has_rates .or. (depends_on_path(run) .and. changes_within(run, run%state%time, &
+                                                           run%state%time + run%stage%duration))) then
          ! What a load leaves at once flows off with the root of time. Where nothing is sudden a step that short would
          ! drown what it changes in rounding.
-         dt = span*min(FIRST_FLOW, max(merge(run%stage%step_tolerance**2, run%stage%step_tolerance, &
-                                             begins_suddenly(run)), SHORTEST))
-      else
-         ! Nothing is there yet to compare its error with; what begins from rest grows with the square of time.
-         dt = span*FIRST_SHARE*sqrt(run%stage%step_tolerance)
+         share = run%stage%step_tolerance
+         if (is_flow(run%stage)) share = merge(share**2, share, begins_suddenly(run))
+         dt = span*min(FIRST, max(share, SHORTEST))
       end if
       if (run%stage%dt > 0.0_wp) dt = min(dt, run%stage%dt)
       dt = min(dt, run%stage%dt_max)
@@ -216,29 +206,10 @@ contains
             return
          end if
          call local_errors(run%scheme, c%memory, run%state, run%next, error, known)
-         if (is_flow(run%stage) .and. c%fresh == 1) error = ROOT_SHARE*begun_with_root(run)
          ! Saturated soil holds no air and has no suction: its number follows no balance that holds it, and rings.
          where (run%state%x(AT_P_C, :) < 0.0_wp .and. run%next%x(AT_P_C, :) < 0.0_wp) error(AT_P_C, :) = 0.0_wp
       end associate
    end subroutine estimate_error
-
-   !> Changes in the second of two equal steps since a sudden change: those of a flow that begins with the root
-   !> of time. Of such a flow the steps change by D and (sqrt(2) - 1) D, so that the rate falls in the second by sqrt(2)
-   !> times what it adds. What goes on as in the first step, as under a load that begins to grow, is none.
-   !> docs/theory/host.md section 4.5.
-   pure function begun_with_root(run) result(change)
-      type(run_t), intent(in) :: run   !< In the second step.
-      real(wp) :: change(FIELDS, size(run%state%x, 2))   !< [m, kPa]
-      real(wp) :: norms(FIELDS), turns(FIELDS)
-      integer :: f
-
-      change = run%next%x - run%state%x
-      norms = field_norms(change)
-      turns = field_norms(run%scheme%dt*(run%next%v - run%state%v))/sqrt(2.0_wp)
-      do f = 1, FIELDS
-         if (turns(f) < norms(f)) change(f, :) = change(f, :)*turns(f)/norms(f)
-      end do
-   end function begun_with_root
 
    !> Whether the error of a controlled step lets it stand, the length of the next attempt, and what limits it: the
    !> largest error of a field over its largest change, against the local tolerance.
@@ -252,8 +223,9 @@ contains
 
       associate (c => run%control, dt => run%scheme%dt)
          bodies = size(run%state%x, 2) - size(run%domain%bodies)
-         shares = field_norms(error(:, :bodies))/scales(run, bodies)
-         shares(:DISPLACEMENTS) = max(shares(:DISPLACEMENTS), share_of_plates(error, bodies, run))
+         shares = field_norms(error(:, :bodies))
+         shares(:DISPLACEMENTS) = max(shares(:DISPLACEMENTS), maxval(abs(error(:DISPLACEMENTS, bodies + 1:))))
+         shares = shares/scales(run, bodies)
          c%error = maxval(shares, mask=known)
          ratio = -1.0_wp
          if (any(known)) ratio = c%error/(run%stage%step_tolerance**LOCAL &
@@ -268,45 +240,14 @@ contains
             return
          end if
          if (.not. any(known)) c%controller%dt = asked
-         if (dt < asked*(1 - LAST_STEP) .and. dt < run%stage%dt_max) then
-            by = BY_TIMES
-         else if (dt >= run%stage%dt_max) then
-            by = BY_LARGEST
-         else if (dt <= SHORTEST*run%stage%duration) then
-            by = BY_SMALLEST
-         else if (c%controller%dt > asked .or. ratio < 0.0_wp) then
-            by = BY_GROWTH
-         else
-            by = maxloc([maxval(shares(:DISPLACEMENTS)), shares(AT_P_W), shares(AT_P_C)], 1)
-         end if
+         by = maxloc([maxval(shares(:DISPLACEMENTS)), shares(AT_P_W), shares(AT_P_C)], 1)
+         if (c%controller%dt > asked .or. ratio < 0.0_wp) by = BY_GROWTH
+         if (dt <= SHORTEST*run%stage%duration) by = BY_SMALLEST
+         if (dt < asked*(1 - LAST_STEP)) by = BY_TIMES
+         if (dt >= run%stage%dt_max) by = BY_LARGEST
          c%limits(by) = c%limits(by) + 1
       end associate
    end subroutine weigh_error
-
-   !> Largest error of a plate over the largest change of the ground, which it has to do with: in flight it errs by
-   !> nothing.
-   !> By the norm of the fields, over all nodes of the ground, a plate that falls on a foot at its side and bounces took
-   !> 1207 steps for 808 and erred by 1e-5 m for 5e-6.
-   pure real(wp) function share_of_plates(error, bodies, run) result(share)
-      real(wp), intent(in) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]
-      integer, intent(in) :: bodies         !< Nodes of the ground; those of the plates come after.
-      type(run_t), intent(in) :: run
-      real(wp) :: change
-
-      share = 0.0_wp
-      if (size(error, 2) == bodies) return
-      change = maxval(abs(run%next%x(:DISPLACEMENTS, :bodies) - run%control%x_first(:DISPLACEMENTS, :bodies)))
-      share = maxval(abs(error(:DISPLACEMENTS, bodies + 1:)))/max(change, PLATE_SHARE*way_of_plates(run, bodies), &
-                                                                  tiny(1.0_wp)**0.25_wp)
-   end function share_of_plates
-
-   pure real(wp) function way_of_plates(run, bodies) result(way)
-      type(run_t), intent(in) :: run
-      integer, intent(in) :: bodies
-
-      way = max(0.0_wp, maxval(abs(run%next%x(:DISPLACEMENTS, bodies + 1:) &
-                                   - run%control%x_first(:DISPLACEMENTS, bodies + 1:))))
-   end function way_of_plates
 
    !> Root mean square over the nodes; displacements count as one field.
    pure function field_norms(values) result(norms)
@@ -327,8 +268,9 @@ contains
       associate (c => run%control)
          s = max(c%scale, field_norms(run%next%x(:, :bodies) - c%x_first(:, :bodies)), &
                  FLOOR*field_norms(run%next%x(:, :bodies)), tiny(1.0_wp)**0.25_wp)
+         s(:DISPLACEMENTS) = max(s(:DISPLACEMENTS), PLATE_SHARE*maxval(abs( &
+            run%next%x(:DISPLACEMENTS, bodies + 1:) - c%x_first(:DISPLACEMENTS, bodies + 1:))))
       end associate
-      s(:DISPLACEMENTS) = max(s(:DISPLACEMENTS), PLATE_SHARE*way_of_plates(run, bodies))
    end function scales
 
    !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
