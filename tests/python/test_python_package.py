@@ -475,10 +475,15 @@ def test_is_the_programs_digit_by_digit():
     check("tables by name", np.array_equal(run.table("nodes_load")["r"], [0.0, 1.0]))
     check("a table that is not there", "nodes_load" in refused(mud.InputError, lambda: run.table("nodes")))
     check("a folder without a run", "histories.csv" in refused(mud.InputError, lambda: mud.HostRun(work)))
+    import matplotlib
+
+    theirs = dict(matplotlib.rcParams)
     mud.plot_histories(run, ["top.u_z"], work / "history.png")
     mud.plot_test({"a": tight, "b": loose}, work / "test.png", {"eps_a": [0.0, 0.05], "q": [0.0, 200.0]})
     many = {f"test {i}": tight for i in range(8)}
     figure = mud.plot_test(many)
+    ours = not figure.axes[0].spines["top"].get_visible()
+    check("pictures have the style of the project and leave the user's", ours and dict(matplotlib.rcParams) == theirs)
     check("eight tests are eight lines of their own", len({
         (line.get_color(),
          str(line.get_linestyle())) for line in figure.axes[0].lines if len(line.get_xdata()) > 1}) == 8)

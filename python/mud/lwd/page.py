@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..host import HostRun
-from ..plots import COLOURS, LINES, pyplot
+from ..plots import COLOURS, LINES, pyplot, style
 from .device import record_of
 from .ground import Test, point_of
 from .measure import Measured, unit_of
@@ -20,6 +20,7 @@ SPLIT = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5])  # a 6-node triangle as fou
 SHOWN = 0.02  # force above which a record and a pulse begin [share of the peak]
 
 
+@style()
 def picture(measured: Measured, path: pathlib.Path, record: str | None = None) -> list[str]:
     """Sketch, last drop against time, pressures, drops, the ground at the peak. Returns what a record shows."""
     plt = pyplot()
