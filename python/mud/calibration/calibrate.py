@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from ..errors import InputError
 from ..material import Material
@@ -60,9 +61,9 @@ def calibrate(
     """Fits a material to the tests of a task that are not held out.
 
     effort : how much the search may do; the default is a whole calibration. workers : processes, 0: one a core; the answer does
-    not depend on it. write : takes lines of progress with the time left, None: silent. beside : material whose misfit is reported
-    too. unfinished : file for what was evaluated, from which an interrupted fit goes on; removed when the fit is done.
-    Reproducible: the same task, seed and library give the same parameters.
+    not depend on it. write : takes lines of progress with the time left, None: silent, and so is the library on sets that are
+    tried. beside : material whose misfit is reported too. unfinished : file for what was evaluated, from which an interrupted fit
+    goes on; removed when the fit is done. Reproducible: the same task, seed and library give the same parameters.
     """
     try:
         import scipy  # noqa: F401
@@ -75,26 +76,27 @@ def calibrate(
         )
     if not task.variables():
         raise InputError("there is nothing to fit: every parameter that these tests depend on is known")
-    screened = screen(task, trial_sets(task, task.variables()))
-    task, notes = screened.task, [*_notes(task), *screened.notes]
-    if write:
-        for note in notes:
-            write(note)
-    store = Store(unfinished, task.fitted(), task.base) if unfinished else None
-    fit, done = Fit(task, effort or Effort(), workers, write, store), False
-    if store and store.read and write:
-        write(f"goes on from {store.path}: {store.read} evaluations of an interrupted fit")
-    try:
-        values = fit.run()
-        task.items = [item.under(values) for item in task.items]
-        answers = answers_of(fit.evaluator.material(values, **SETTINGS), task.items)
-        ensemble = make_ensemble(fit, values, answers)
-        found = diagnose(fit, values, answers, ensemble)
-        done = True
-    finally:
-        fit.evaluator.close()
-        if store:
-            store.close(done)
+    with remarks_of_the_library(write is not None):
+        screened = screen(task, trial_sets(task, task.variables()))
+        task, notes = screened.task, [*_notes(task), *screened.notes]
+        if write:
+            for note in notes:
+                write(note)
+        store = Store(unfinished, task.fitted(), task.base) if unfinished else None
+        fit, done = Fit(task, effort or Effort(), workers, write, store), False
+        if store and store.read and write:
+            write(f"goes on from {store.path}: {store.read} evaluations of an interrupted fit")
+        try:
+            values = fit.run()
+            task.items = [item.under(values) for item in task.items]
+            answers = answers_of(fit.evaluator.material(values, **SETTINGS), task.items)
+            ensemble = make_ensemble(fit, values, answers)
+            found = diagnose(fit, values, answers, ensemble)
+            done = True
+        finally:
+            fit.evaluator.close()
+            if store:
+                store.close(done)
     other = Material(beside, **SETTINGS) if beside else None
     return Calibration(
         task,
@@ -114,6 +116,20 @@ def calibrate(
         ensemble,
         notes,
     )
+
+
+@contextlib.contextmanager
+def remarks_of_the_library(wanted: bool) -> Iterator[None]:
+    """Unless wanted the library says nothing on standard error, nor does that of a worker that begins meanwhile."""
+    before = os.environ.get("MUD_MESSAGES")
+    if not wanted:
+        os.environ["MUD_MESSAGES"] = "off"
+    try:
+        yield
+    finally:
+        os.environ.pop("MUD_MESSAGES", None)
+        if before is not None:
+            os.environ["MUD_MESSAGES"] = before
 
 
 def evaluate(task: Task, material: str | os.PathLike | Material, beside: str | None = None) -> Calibration:
