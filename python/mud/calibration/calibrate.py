@@ -19,7 +19,7 @@ from .screen import screen
 from .simulation import SETTINGS, Answer, simulate
 from .soundness import unloading
 from .store import Store
-from .task import Item, Task
+from .task import Item, Task, in_kpa
 
 UNDERSTOOD = "understood in"  # so begins the note of a name that had to be understood
 
@@ -97,7 +97,7 @@ def calibrate(
             fit.evaluator.close()
             if store:
                 store.close(done)
-    other = Material(beside, **SETTINGS) if beside else None
+    other = in_kpa(Material(beside, **SETTINGS)) if beside else None
     return Calibration(
         task,
         fit.evaluator.material(values),
@@ -135,9 +135,9 @@ def remarks_of_the_library(wanted: bool) -> Iterator[None]:
 def evaluate(task: Task, material: str | os.PathLike | Material, beside: str | None = None) -> Calibration:
     """Fits nothing: a material against every test of a task, held out or not, for ``write_report``."""
     begin, used = time.monotonic(), _cpu()
-    sand = material if isinstance(material, Material) else Material(material)
+    sand = in_kpa(material if isinstance(material, Material) else Material(material))
     answers = answers_of(sand.changed(**SETTINGS), task.items)
-    other = Material(beside, **SETTINGS) if beside else None
+    other = in_kpa(Material(beside, **SETTINGS)) if beside else None
     return Calibration(
         task,
         sand,

@@ -81,6 +81,8 @@ def _known(words: list[str]) -> dict[str, float]:
     known = {}
     for word in words:
         name, equals, value = word.partition("=")
+        if name in known:
+            raise InputError(f"--known {word}: {name} is given twice")
         try:
             known[name] = float(value)
         except ValueError:

@@ -278,8 +278,9 @@ def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[St
         Stage(test.kind, eps_a_end=float(np.copysign(end, last)), increment=step, output_interval=step)
         for end, (_, step) in zip(ends, STRAIN_INCREMENTS)
     ]
-    start = test.sigma_r if test.kind == "drained" else float(test["p"][0] - test["q"][0] / 3)
-    return stages, {"p_eff": start, "void_ratio": test.e_0, "suction": test.suction}
+    radial, q = test.start_of_shear()
+    start = {"sigma_a": radial + q, "sigma_r": radial} if q else {"p_eff": radial}
+    return stages, {**start, "void_ratio": test.e_0, "suction": test.suction}
 
 
 def turns(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
