@@ -48,7 +48,7 @@ def _sketch(axes, test: Test):
         top = low
     axes.fill_between([0, a], 0, 0.25 * a, color="0.3", lw=0)
     axes.annotate("", (0.5 * a, 0.3 * a), (0.5 * a, 1.9 * a), arrowprops={"arrowstyle": "-|>", "color": "k"})
-    pulse = f"{device.peak:.3g} kN\n" + ("recorded" if device.record else f"half sine of {1e3 * device.pulse:g} ms")
+    pulse = f"{device.largest:.3g} kN\n" + ("recorded" if device.record else f"half sine of {1e3 * device.pulse:g} ms")
     if device.buffer:
         pulse = f"{1e3 * device.fall_mass:g} kg from {device.fall:g} m\non {device.buffer:g} kN/m"
     axes.text(0.75 * a, 1.1 * a, f"{device.name}: {pulse}", fontsize=8, va="center")
