@@ -249,6 +249,11 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
     check("several materials without the numbers of the points are refused", "material" in told, told)
     told = refused(mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=some + 1))
     check("a number beyond the points is refused", "4" in told, told)
+    check("a number that is too large is told", "there are" in told, told)
+    for list_of_points, word in (([0, -1], "the number -1"), ([1, 0, 1], "1 more than once")):
+        listed = np.array(list_of_points, dtype=np.intc)
+        told = refused(mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=listed))
+        check(f"points {list_of_points} are refused", word in told, told)
     wetter = sand.update_batch(begun.stress, begun.statev, shear, 0.5 * suctions, tangent="consistent")
     kept = sand.update_batch(begun.stress, begun.statev, shear)
     check(
