@@ -7,7 +7,7 @@ import contextlib
 import dataclasses
 import os
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from ..errors import InputError
 from ..material import Material
@@ -78,7 +78,7 @@ def calibrate(
         raise InputError("there is nothing to fit: every parameter that these tests depend on is known")
     with remarks_of_the_library(write is not None):
         screened = screen(task, trial_sets(task, task.variables()))
-        task, notes = screened.task, [*_notes(task), *screened.notes]
+        task, notes = screened.task, [*_notes(task, task.base), *screened.notes]
         if write:
             for note in notes:
                 write(note)
@@ -153,15 +153,15 @@ def evaluate(task: Task, material: str | os.PathLike | Material, beside: str | N
         misfits_of(task.items, answers_of(other, task.items)) if other else None,
         beside or "",
         notes=[
-            *_notes(task),
+            *_notes(task, sand),
             *(f"{name} stopped: {answer.stopped}" for name, answer in answers.items() if answer.stopped),
             *unloading(sand, task.items, answers),
         ],
     )
 
 
-def _notes(task: Task) -> list[str]:
-    """What the tables' defaults left out, the tests of one sentence together."""
+def _notes(task: Task, sand: Mapping[str, float]) -> list[str]:
+    """What the tables' defaults left out, the tests of one sentence together, and what they lack. sand : parameters."""
     told: dict[str, list[str]] = {}
     sources = dict.fromkeys((item.test.source, pair) for item in task.items for pair in item.test.understood)
     for source, (given, meant) in sources:
@@ -169,6 +169,9 @@ def _notes(task: Task) -> list[str]:
     for item in task.items:
         if item.use.note:
             told.setdefault(item.use.note, []).append(item.test.name)
+        if item.test.kind == "retention" and not {"e", "e_0"} & set(item.test.columns) and sand["Omega"] > 0:
+            blind = f"no void ratio, with which the curve moves: e_0 of the material, {sand['e_0']:g}, is taken; give e or e_0"
+            told.setdefault(blind, []).append(item.test.name)
     return [f"{', '.join(names)}: {note}." if names else f"{note}." for note, names in told.items()]
 
 
