@@ -149,6 +149,9 @@ def test_a_shear_test_begins_where_it_is_sheared():
         hears(name, HEAD + first + "".join(ROWS[1:]), *words)
     told = sentence(HEAD + "A,1,-0.1,100,133,0.8018\n" + "".join(ROWS[1:]))
     check("a record that begins on the way is read", told == "", told)
+    FILE.write_text("eps_a,q_kPa,p_kPa,e\n0,0,100,0.8\n-0.05,-60,70,0.8\n-0.1,-62,65,0.8\n")
+    told = str(read_table(FILE, "undrained")[0].understood)
+    check("extension is told, for it may be tension with the sign plus", "extension" in told, told)
 
 
 def test_a_cyclic_test_has_one_amplitude_control_and_start():

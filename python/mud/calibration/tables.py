@@ -352,6 +352,8 @@ def _check_start(place: str, test: LaboratoryTest) -> None:
                 f"{place}:{test.lines[0]}: test {test.name}: {name} begins at {test[name][0]:g}, before the sample is sheared: "
                 "strains count from the start of shearing, and e_0 is the void ratio there. Take the first value off the others"
             )
+    if np.median(q) < 0:
+        test.understood.append((f"a negative q in test {test.name}", "extension, because compression is positive"))
     q_0 = test.start_of_shear()[1]
     if q_0:
         told = "the start of the model, of a sample that was consolidated anisotropically"
