@@ -36,7 +36,8 @@ def pyplot():
         import matplotlib
     except ImportError as problem:
         raise ImportError("plots need matplotlib: pip install 'mud-soil[plots]'") from problem
-    if not os.environ.get("MPLBACKEND") and "matplotlib.pyplot" not in sys.modules:
+    chosen = isinstance(dict.__getitem__(matplotlib.rcParams, "backend"), str)  # rcParams["backend"] would choose one
+    if not chosen and "matplotlib.pyplot" not in sys.modules:
         matplotlib.use("Agg", force=False)
     import matplotlib.pyplot as plt
 

@@ -579,6 +579,9 @@ def test_m_c_of_the_friction_angle():
         ({"only": "DL"}, "there is no test DL"),  # a word is a name, not a set of letters
         ({"weight": -1.0}, "weight = -1"),
         ({"scatter": {"q": [0.0, 0.0]}}, "not both of them 0"),
+        ({"scatter": {"eps_v": [0.25, 0.0]}}, "fractions, not per cent"),
+        ({"scatter": {"q": [3.0, 5.0]}}, "fractions, not per cent"),
+        ({"last": 15.0}, "strains as fractions"),
     ):
         told = refusal(lambda: make_task("k", [{**make_tables("true.csv")[0], **table}]))
         check(f"{table} is refused", word in told, told)

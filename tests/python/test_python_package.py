@@ -485,6 +485,15 @@ def test_is_the_programs_digit_by_digit():
     theirs = dict(matplotlib.rcParams)
     mud.plot_histories(run, ["top.u_z"], work / "history.png")
     mud.plot_test({"a": tight, "b": loose}, work / "test.png", {"eps_a": [0.0, 0.05], "q": [0.0, 200.0]})
+    for before, after in (
+        ("import matplotlib; matplotlib.use('svg')", "svg"), ("import matplotlib.pyplot; matplotlib.use('svg')", "svg"),
+        ("import matplotlib", "agg"),
+    ):
+        words = f"{before}; from mud.plots import pyplot; pyplot(); print(matplotlib.get_backend())"
+        bare = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
+        done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True,
+                              env={**bare, "PYTHONPATH": str(root / "python")})
+        check(f"{before}: the backend", done.stdout.strip().lower() == after, done.stdout + done.stderr)
     many = {f"test {i}": tight for i in range(8)}
     figure = mud.plot_test(many)
     ours = not figure.axes[0].spines["top"].get_visible()

@@ -91,6 +91,8 @@ def use_of(
             "liquefaction": "csr",
         }[test.kind]
     ]
+    if test.kind in ("drained", "undrained", "modulus") and max(first or 0.0, last or 0.0) > 1:
+        raise InputError(f"first and last of a {test.kind} test are strains as fractions, not in per cent")
     size, note = np.abs(lead), ""
     by_stress = test.kind in ("oedometer", "isotropic")
     if by_stress and first is None and size[0] < SETTLED and np.sum(size >= SETTLED) >= FEWEST_ROWS[test.kind]:

@@ -23,6 +23,8 @@ TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "o
 
 
 UNIT = (50.0, 200.0)  # [kPa] between them an atmosphere is in kPa
+FRACTIONS = ("eps_v", "e", "S_w", "r_u", "G_ratio", "damping")
+LARGEST_SCATTER = 0.2  # of one of these: more means per cent
 LOOSER = 0.1  # [-] by which an unknown void ratio may lie beyond those of the other tests
 
 
@@ -139,6 +141,12 @@ def make_task(
                 )
         if any(len(s) != 2 or not (0 <= min(s) and 0 < max(s) < np.inf) for s in scatter.values()):
             raise InputError("scatter: a deviation has two numbers, absolute and as a share, from 0 on and not both of them 0")
+        for quantity, (absolute, share) in scatter.items():
+            if share > 1 or quantity in FRACTIONS and absolute > LARGEST_SCATTER:
+                raise InputError(
+                    f"scatter: {quantity} = {absolute:g}, {share:g}: shares and deviations of {', '.join(FRACTIONS)} are "
+                    f"fractions, not per cent, up to 1 and {LARGEST_SCATTER:g}"
+                )
         weight = float(table.get("weight", 1.0))
         if not 0 <= weight < np.inf:
             raise InputError(f"weight = {weight:g}: it must be a number from 0 on")
