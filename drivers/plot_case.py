@@ -24,6 +24,7 @@ def read_result(path):
     return facts, tables.columns(path)
 
 
+@plots.style()
 def draw(results, output):
     plt = plots.pyplot()
     labels = [facts.get("case", f"result {i}") for i, (facts, _) in enumerate(results, 1)]

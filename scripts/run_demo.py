@@ -61,6 +61,7 @@ def fitted_sand(build, folder):
     print("\nA fitted sand beside the published one (a second)", flush=True)
     items = read_task(ROOT / "calibration/toyoura_fitted.toml").items
     plt = plots.pyplot()
+    plt.rcParams.update(plots.STYLE)
     figure, axes = plt.subplots(2, 2, figsize=(9.5, 7), sharex=True, layout="constrained")
     for column, name in enumerate(("toyoura", "toyoura_fitted")):
         answers = answers_of(mud.Material(name), items)

@@ -7,6 +7,7 @@ Runs what ``law_checks`` asks of a law and writes a report: one finding a line, 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import pathlib
 import sys
@@ -18,7 +19,7 @@ from . import _native
 from .law_checks import CHECKS, FAULT, NOTE, UNJUDGED, Finding, Refusal, Setting
 from .law_under_test import ORDERS, SYMBOLS, Ended, Law, apart
 from .material import Material
-from .plots import pyplot
+from .plots import pyplot, style
 
 SLOW = 300.0  # s that a check may take
 
@@ -84,8 +85,10 @@ def write_report(findings: Sequence[Finding], law: Law, folder: pathlib.Path) ->
         if finding.case:
             (folder / f"{name}.nml").write_text(finding.case, encoding="utf-8")
             more.append(f"[case]({name}.nml)")
-        if finding.curves and _draw(finding, folder / f"{name}.png"):
-            more.append(f"[picture]({name}.png)")
+        if finding.curves:
+            with contextlib.suppress(ImportError):  # without matplotlib there are no pictures
+                _draw(finding, folder / f"{name}.png")
+                more.append(f"[picture]({name}.png)")
         value = "" if finding.value is None else f"{finding.value:.2g}"
         lines.append(f"| {finding.verdict} | {finding.check} | {finding.sentence} | {value} | {', '.join(more)} |")
     (folder / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -93,11 +96,9 @@ def write_report(findings: Sequence[Finding], law: Law, folder: pathlib.Path) ->
     (folder / "findings.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
 
-def _draw(finding: Finding, path: pathlib.Path) -> bool:
-    try:
-        plt = pyplot()
-    except ImportError:
-        return False
+@style()
+def _draw(finding: Finding, path: pathlib.Path) -> None:
+    plt = pyplot()
     apart_curves = {k: v for k, v in finding.curves.items() if v[0]}
     iterations = {k: v[1] for k, v in finding.curves.items() if not v[0]}
     figure, axes = plt.subplots(1, 1 + bool(iterations), figsize=(5 + 4 * bool(iterations), 3.6), squeeze=False)
@@ -119,7 +120,6 @@ def _draw(finding: Finding, path: pathlib.Path) -> bool:
     figure.tight_layout()
     figure.savefig(path)
     plt.close(figure)
-    return True
 
 
 def _numbers(text: str) -> list[float]:

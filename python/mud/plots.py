@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Mapping, Sequence
+import sys
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,30 +19,36 @@ if TYPE_CHECKING:
 
 COLOURS = ("#0b3c6f", "#c8553d", "#3a8f6a", "#8a5a9e", "#b58900", "#555555")
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
+STYLE = {
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "font.size": 9,
+    "savefig.dpi": 130,
+    "lines.linewidth": 1.5,
+}
 _POINTS = {"marker": "o", "ls": "", "color": COLOURS[5], "ms": 3.5, "mfc": "white"}
 
 
 def pyplot():
-    """matplotlib.pyplot with the style of the project."""
+    """matplotlib.pyplot; for files alone where nobody has chosen a backend or imported it before."""
     try:
         import matplotlib
     except ImportError as problem:
         raise ImportError("plots need matplotlib: pip install 'mud-soil[plots]'") from problem
-    if not os.environ.get("MPLBACKEND"):
+    chosen = isinstance(dict.__getitem__(matplotlib.rcParams, "backend"), str)  # rcParams["backend"] would choose one
+    if not chosen and "matplotlib.pyplot" not in sys.modules:
         matplotlib.use("Agg", force=False)
     import matplotlib.pyplot as plt
 
-    plt.rcParams.update(
-        {
-            "axes.spines.top": False,
-            "axes.spines.right": False,
-            "legend.frameon": False,
-            "font.size": 9,
-            "savefig.dpi": 130,
-            "lines.linewidth": 1.5,
-        }
-    )
     return plt
+
+
+@contextlib.contextmanager
+def style() -> Iterator[None]:
+    """The style of the project for what is drawn meanwhile, also as a decorator; the user's own comes back."""
+    with pyplot().rc_context(STYLE):
+        yield
 
 
 # Of a range, a share of its scale below which it is constant.
@@ -171,6 +179,7 @@ def key(plt, figure: Figure, labels: Sequence[str], laboratory: bool = False) ->
     figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)))
 
 
+@style()
 def plot_test(
     tests: TestResult | Mapping[str, TestResult] | Sequence[TestResult],
     output: str | os.PathLike | None = None,
@@ -219,6 +228,7 @@ def plot_test(
     return figure
 
 
+@style()
 def plot_histories(run: HostRun, columns: Sequence[str], output: str | os.PathLike | None = None) -> Figure:
     """Histories of a run of the host against time [s], a panel for each column ("POINT.QUANTITY"). Returns the figure."""
     from .errors import UnknownName

@@ -214,8 +214,12 @@ class Points:
                 need(array, (len(array) if size is None else size,), name, np.intc)
                 setattr(points, name, array.ctypes.data)
         if listed is not None:
-            if len(listed) and int(listed.max()) >= n:
-                raise InputError(f"points has the number {int(listed.max())}; there are {n} points, from 0")
+            wrong = listed[(listed < 0) | (listed >= n)]
+            if len(wrong):
+                raise InputError(f"points has the number {wrong[0]}; there are {n} points, from 0")
+            often = np.bincount(listed, minlength=1)
+            if often.max() > 1:  # in place it would be updated again
+                raise InputError(f"points has the number {np.argmax(often)} more than once")
             points.n = len(listed)
         summary = _native.Summary()
         failed = function(self._storage.ctypes.data, len(self._storage), byref(points), byref(summary))

@@ -64,6 +64,20 @@ def test_the_formulas_are_those_of_the_standards():
     check("Zorn", abs(device_of("zorn").modulus(0.5e-3) / 1e3 - 45.0) < 1e-9, device_of("zorn").modulus(0.5e-3))
     # What the Zorn has measured does not count, what the load cell of the Prima has does: 6 kN on 0.0707 m2.
     check("Zorn, another force", device_of("zorn").modulus(0.5e-3, 6.0) == device_of("zorn").modulus(0.5e-3))
+    (work / "harder.csv").write_text("time,force\n0,0\n8,8\n16,0\n")
+    recorded = device_of("zorn", work / "harder.csv")
+    check("Zorn, a record of its force", abs(recorded.modulus(0.5e-3) / 1e3 - 45.0) < 1e-9, recorded)
+    check("its largest force is that of the record", recorded.largest == 8.0, recorded.largest)
+    measured = device_of("prima", work / "harder.csv", mass=0.012)
+    check("Prima, a record", measured.modulus(1e-3) == measured.modulus(1e-3, 8.0), measured)
+    for given, word in (
+        ({"pulse": 0.017e-3}, "lasts 0.017 ms"),
+        ({"mass": 0.015e-3}, "0.015 kg rest on the ground"),
+        ({"buffer": 354.0, "fall": 72.0}, "falls from 72 m"),
+        ({"record": work / "harder.csv", "pulse": 0.02}, "leave one of the two out"),
+    ):
+        said = raised(lambda: device_of("zorn", **given))
+        check(f"{given} is refused", word in said, said)
     prima = device_of("prima", peak=7.0, pulse=0.018, mass=0.012)
     closed = math.pi / 2 * (1 - 0.35**2) * 6 / (math.pi * 0.15**2) * 0.15 / 1e-3
     check("Prima", abs(prima.modulus(1e-3, 6.0) / closed - 1) < 1e-9, prima.modulus(1e-3, 6.0))
@@ -263,7 +277,7 @@ def test_what_cannot_be_computed_is_refused_in_a_sentence():
         ((*ELASTIC, "--device", "prima", "--buffer", "300"), "needs --fall-mass, --fall, --plate-mass"),
         ((*ELASTIC, "--fall", "0.5"), "needs the stiffness of the buffer in kN/m: --buffer"),
         ((*ELASTIC, "--buffer", "300", "--pulse", "17"), "--pulse gives the pulse"),
-        ((*ELASTIC, "--peak", "7070"), "with up to 1e+05 kPa, and devices stay below 10000 kPa: forces are in kN"),
+        ((*ELASTIC, "--peak", "7070"), "with up to 1e+05 kPa, as in no device: forces are in kN"),
         ((*ELASTIC, "--radius", "0.15"), "the radius in mm"),
         ((*ELASTIC, "--drops", "3", "0"), "at least one drop is measured"),
         ((*ELASTIC, "--step-tolerance", "0.5"), "--step-tolerance is 0.5; it is above 0 and at most 0.0316"),

@@ -36,6 +36,26 @@ def missed(table, material=sand, **settings):
     return misfits_of(task.items, answers)[0], next(iter(answers.values()))
 
 
+def test_retention_without_a_void_ratio_tells_at_which_it_is_taken():
+    rows = "".join(f"{s},{sand.saturation(s, 0.6)}\n" for s in (1.0, 5.0, 20.0))
+    table = written("retention_blind.csv", "suction_kPa,S_w\n" + rows)
+    told = " ".join(evaluate(make_task("r", [table]), sand).notes)
+    check("the void ratio that is taken is told", "e_0 of the material, 0.8, is taken" in told, told)
+    told = " ".join(evaluate(make_task("r", [table]), sand.changed(Omega=0.0)).notes)
+    check("where it moves the curve", "is taken" not in told, told)
+
+
+def test_a_bound_that_the_tests_do_not_press_on_is_no_warning():
+    # The truth has S_min = 0 and S_max = 1, where soil ends: nothing outside fits better.
+    rows = "".join(f"{s},{sand.saturation(s, 0.6)},0.6\n" for s in np.geomspace(0.5, 300.0, 12))
+    table = written("retention_bound.csv", "suction_kPa,S_w,e\n" + rows)
+    result = calibrate(make_task("r", [table], start="toyoura"), Effort(samples=16, starts=1, members=8), 1, None)
+    at = {f.variable.name for f in result.diagnosis.findings if f.at_bound}
+    told = " ".join(result.diagnosis.warnings)
+    check("values at a bound are met", "S_max" in at and result.misfits[0].S_w < 1e-3, (at, result.misfits))
+    check("and are no warning", "outside the bounds" not in told, told)
+
+
 # Loops of retention with hysteresis: 72 points, rms 0.0159 (calibration/hostun_hysteresis).
 loops = {"file": root / "calibration/data/hostun_sand_retention_loops.csv", "kind": "retention"}
 

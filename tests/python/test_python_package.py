@@ -249,6 +249,11 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
     check("several materials without the numbers of the points are refused", "material" in told, told)
     told = refused(mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=some + 1))
     check("a number beyond the points is refused", "4" in told, told)
+    check("a number that is too large is told", "there are" in told, told)
+    for list_of_points, word in (([0, -1], "the number -1"), ([1, 0, 1], "1 more than once")):
+        listed = np.array(list_of_points, dtype=np.intc)
+        told = refused(mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=listed))
+        check(f"points {list_of_points} are refused", word in told, told)
     wetter = sand.update_batch(begun.stress, begun.statev, shear, 0.5 * suctions, tangent="consistent")
     kept = sand.update_batch(begun.stress, begun.statev, shear)
     check(
@@ -475,10 +480,24 @@ def test_is_the_programs_digit_by_digit():
     check("tables by name", np.array_equal(run.table("nodes_load")["r"], [0.0, 1.0]))
     check("a table that is not there", "nodes_load" in refused(mud.InputError, lambda: run.table("nodes")))
     check("a folder without a run", "histories.csv" in refused(mud.InputError, lambda: mud.HostRun(work)))
+    import matplotlib
+
+    theirs = dict(matplotlib.rcParams)
     mud.plot_histories(run, ["top.u_z"], work / "history.png")
     mud.plot_test({"a": tight, "b": loose}, work / "test.png", {"eps_a": [0.0, 0.05], "q": [0.0, 200.0]})
+    for before, after in (
+        ("import matplotlib; matplotlib.use('svg')", "svg"), ("import matplotlib.pyplot; matplotlib.use('svg')", "svg"),
+        ("import matplotlib", "agg"),
+    ):
+        words = f"{before}; from mud.plots import pyplot; pyplot(); print(matplotlib.get_backend())"
+        bare = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
+        done = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True,
+                              env={**bare, "PYTHONPATH": str(root / "python")})
+        check(f"{before}: the backend", done.stdout.strip().lower() == after, done.stdout + done.stderr)
     many = {f"test {i}": tight for i in range(8)}
     figure = mud.plot_test(many)
+    ours = not figure.axes[0].spines["top"].get_visible()
+    check("pictures have the style of the project and leave the user's", ours and dict(matplotlib.rcParams) == theirs)
     check("eight tests are eight lines of their own", len({
         (line.get_color(),
          str(line.get_linestyle())) for line in figure.axes[0].lines if len(line.get_xdata()) > 1}) == 8)

@@ -97,7 +97,8 @@ int mud_bounds(int list, int index, double *lower, double *upper, double *preset
 int mud_bounds_for(const double *props, int nprops, int index, double *lower, double *upper, double *preset);
 int mud_default_props(double *props, int nprops);           /* in kPa */
 /* The same material in another unit of stress, `factor` of which make one of the present unit (from kPa: 1000 Pa,
- * 0.001 MPa, 0.1450377 psi). Changes p_atm, alpha_csl, P_a, P_aw, p_min and, by factor^lambda, N_c and N_l. */
+ * 0.001 MPa, 0.1450377 psi). Changes p_atm, alpha_csl, P_a, P_aw, p_min, p_ell and, by factor^lambda, N_c
+ * and N_l. */
 int mud_convert_props(double *props, int nprops, double factor);
 /* Text: a sentence for the first fault; with MUD_OK "no error" or, where stresses of PROPS seem to have another unit
  * than p_atm, a sentence that begins with "warning: ". */

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from ..errors import InputError
 from ..material import Material
@@ -18,7 +19,7 @@ from .screen import screen
 from .simulation import SETTINGS, Answer, simulate
 from .soundness import unloading
 from .store import Store
-from .task import Item, Task
+from .task import Item, Task, in_kpa
 
 UNDERSTOOD = "understood in"  # so begins the note of a name that had to be understood
 
@@ -60,9 +61,9 @@ def calibrate(
     """Fits a material to the tests of a task that are not held out.
 
     effort : how much the search may do; the default is a whole calibration. workers : processes, 0: one a core; the answer does
-    not depend on it. write : takes lines of progress with the time left, None: silent. beside : material whose misfit is reported
-    too. unfinished : file for what was evaluated, from which an interrupted fit goes on; removed when the fit is done.
-    Reproducible: the same task, seed and library give the same parameters.
+    not depend on it. write : takes lines of progress with the time left, None: silent, and so is the library on sets that are
+    tried. beside : material whose misfit is reported too. unfinished : file for what was evaluated, from which an interrupted fit
+    goes on; removed when the fit is done. Reproducible: the same task, seed and library give the same parameters.
     """
     try:
         import scipy  # noqa: F401
@@ -75,27 +76,28 @@ def calibrate(
         )
     if not task.variables():
         raise InputError("there is nothing to fit: every parameter that these tests depend on is known")
-    screened = screen(task, trial_sets(task, task.variables()))
-    task, notes = screened.task, [*_notes(task), *screened.notes]
-    if write:
-        for note in notes:
-            write(note)
-    store = Store(unfinished, task.fitted(), task.base) if unfinished else None
-    fit, done = Fit(task, effort or Effort(), workers, write, store), False
-    if store and store.read and write:
-        write(f"goes on from {store.path}: {store.read} evaluations of an interrupted fit")
-    try:
-        values = fit.run()
-        task.items = [item.under(values) for item in task.items]
-        answers = answers_of(fit.evaluator.material(values, **SETTINGS), task.items)
-        ensemble = make_ensemble(fit, values, answers)
-        found = diagnose(fit, values, answers, ensemble)
-        done = True
-    finally:
-        fit.evaluator.close()
-        if store:
-            store.close(done)
-    other = Material(beside, **SETTINGS) if beside else None
+    with remarks_of_the_library(write is not None):
+        screened = screen(task, trial_sets(task, task.variables()))
+        task, notes = screened.task, [*_notes(task, task.base), *screened.notes]
+        if write:
+            for note in notes:
+                write(note)
+        store = Store(unfinished, task.fitted(), task.base) if unfinished else None
+        fit, done = Fit(task, effort or Effort(), workers, write, store), False
+        if store and store.read and write:
+            write(f"goes on from {store.path}: {store.read} evaluations of an interrupted fit")
+        try:
+            values = fit.run()
+            task.items = [item.under(values) for item in task.items]
+            answers = answers_of(fit.evaluator.material(values, **SETTINGS), task.items)
+            ensemble = make_ensemble(fit, values, answers)
+            found = diagnose(fit, values, answers, ensemble)
+            done = True
+        finally:
+            fit.evaluator.close()
+            if store:
+                store.close(done)
+    other = in_kpa(Material(beside, **SETTINGS)) if beside else None
     return Calibration(
         task,
         fit.evaluator.material(values),
@@ -116,12 +118,26 @@ def calibrate(
     )
 
 
+@contextlib.contextmanager
+def remarks_of_the_library(wanted: bool) -> Iterator[None]:
+    """Unless wanted the library says nothing on standard error, nor does that of a worker that begins meanwhile."""
+    before = os.environ.get("MUD_MESSAGES")
+    if not wanted:
+        os.environ["MUD_MESSAGES"] = "off"
+    try:
+        yield
+    finally:
+        os.environ.pop("MUD_MESSAGES", None)
+        if before is not None:
+            os.environ["MUD_MESSAGES"] = before
+
+
 def evaluate(task: Task, material: str | os.PathLike | Material, beside: str | None = None) -> Calibration:
     """Fits nothing: a material against every test of a task, held out or not, for ``write_report``."""
     begin, used = time.monotonic(), _cpu()
-    sand = material if isinstance(material, Material) else Material(material)
+    sand = in_kpa(material if isinstance(material, Material) else Material(material))
     answers = answers_of(sand.changed(**SETTINGS), task.items)
-    other = Material(beside, **SETTINGS) if beside else None
+    other = in_kpa(Material(beside, **SETTINGS)) if beside else None
     return Calibration(
         task,
         sand,
@@ -137,15 +153,15 @@ def evaluate(task: Task, material: str | os.PathLike | Material, beside: str | N
         misfits_of(task.items, answers_of(other, task.items)) if other else None,
         beside or "",
         notes=[
-            *_notes(task),
+            *_notes(task, sand),
             *(f"{name} stopped: {answer.stopped}" for name, answer in answers.items() if answer.stopped),
             *unloading(sand, task.items, answers),
         ],
     )
 
 
-def _notes(task: Task) -> list[str]:
-    """What the tables' defaults left out, the tests of one sentence together."""
+def _notes(task: Task, sand: Mapping[str, float]) -> list[str]:
+    """What the tables' defaults left out, the tests of one sentence together, and what they lack. sand : parameters."""
     told: dict[str, list[str]] = {}
     sources = dict.fromkeys((item.test.source, pair) for item in task.items for pair in item.test.understood)
     for source, (given, meant) in sources:
@@ -153,6 +169,9 @@ def _notes(task: Task) -> list[str]:
     for item in task.items:
         if item.use.note:
             told.setdefault(item.use.note, []).append(item.test.name)
+        if item.test.kind == "retention" and not {"e", "e_0"} & set(item.test.columns) and sand["Omega"] > 0:
+            blind = f"no void ratio, with which the curve moves: e_0 of the material, {sand['e_0']:g}, is taken; give e or e_0"
+            told.setdefault(blind, []).append(item.test.name)
     return [f"{', '.join(names)}: {note}." if names else f"{note}." for note, names in told.items()]
 
 

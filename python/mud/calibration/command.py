@@ -4,14 +4,12 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
-import os
 import pathlib
 import sys
 import tempfile
 
 from ..errors import InputError, MudError
-from .calibrate import calibrate, evaluate
+from .calibrate import calibrate, evaluate, remarks_of_the_library
 from .fit import Effort, say
 from .report import summary, write_material, write_report
 from .tables import NEEDS
@@ -83,6 +81,8 @@ def _known(words: list[str]) -> dict[str, float]:
     known = {}
     for word in words:
         name, equals, value = word.partition("=")
+        if name in known:
+            raise InputError(f"--known {word}: {name} is given twice")
         try:
             known[name] = float(value)
         except ValueError:
@@ -96,23 +96,8 @@ def main(words: list[str] | None = None) -> int:
     """Exit code 0: done; 2: what was given is refused; 130: interrupted."""
     parser = _parser()
     options = parser.parse_args(words)
-    if options.quiet:
-        with _silent_library():
-            return _run(parser, options)
-    return _run(parser, options)
-
-
-@contextlib.contextmanager
-def _silent_library():
-    """The library says nothing on standard error, nor does that of a worker that begins meanwhile."""
-    before = os.environ.get("MUD_MESSAGES")
-    os.environ["MUD_MESSAGES"] = "off"
-    try:
-        yield
-    finally:
-        del os.environ["MUD_MESSAGES"]
-        if before is not None:
-            os.environ["MUD_MESSAGES"] = before
+    with remarks_of_the_library(not options.quiet):
+        return _run(parser, options)
 
 
 def _run(parser: argparse.ArgumentParser, options: argparse.Namespace) -> int:

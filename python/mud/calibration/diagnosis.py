@@ -23,6 +23,7 @@ UNDETERMINED = 2.0  # a 95 % interval that reaches from half to twice the value 
 FLAT = 0.05  # [standard deviations of a curve] a change by 10 % that moves the curves by less is not felt
 CORRELATED = 0.95
 NEAR_BOUND = 0.01  # share of the bounds
+DRAWN = 0.005  # share of the misfit, or of the scatter of measurements, that a value beyond a bound takes away at least
 STEP = 8e-3  # of the differences at the optimum, to both sides
 POISSON = (0.0, 0.45)
 SOFTEST = 0.05  # 1 - c_h e below it: the hardening law is at its guard
@@ -59,6 +60,7 @@ class Finding:
     sensitivity: float  #: how far a change by 10 % moves the curves, rms in standard deviations of what was measured
     determined: bool
     at_bound: str = ""  #: "lower", "upper" or nothing
+    drawn: bool = False  #: beyond that bound the misfit would fall
 
 
 @dataclasses.dataclass
@@ -85,12 +87,14 @@ def diagnose(
     jacobian = _central(fit, both, everything)
     curves = fit.curves
     n = len(fit.variables)
-    covariance = np.zeros((n, n))
+    now = fit.evaluator.residuals([everything])[0]
+    covariance, scatter = np.zeros((n, n)), np.ones(n)
     for part in fit.parts:
         mine = [i for i, v in enumerate(fit.variables) if v in part.variables]
         variance = fit.variance(fit.evaluator.residuals([everything], part.numbers)[0], part)
         own = _central(fit, [fit.variables[i] for i in mine], everything, part.numbers)
         covariance[np.ix_(mine, mine)] = posterior(own, variance)
+        scatter[mine] = variance
     deviations = np.sqrt(np.diag(covariance))
     findings = []
     for i, variable in enumerate(both):
@@ -107,9 +111,11 @@ def diagnose(
                 else high - low > (variable.upper - variable.lower) / 2
             )
             bound = "lower" if share < NEAR_BOUND else "upper" if share > 1 - NEAR_BOUND else ""
-            findings.append(
-                Finding(variable, everything[variable.name], True, low, high, felt, not wide and felt >= FLAT, bound)
-            )
+            slope = float(jacobian[:, i] @ now)
+            gain = slope**2 * covariance[i, i] / scatter[i]  # if the others may follow
+            drawn = (slope > 0) == (bound == "lower") and gain > DRAWN * max(float(now @ now), curves)
+            value, determined = everything[variable.name], not wide and felt >= FLAT
+            findings.append(Finding(variable, value, True, low, high, felt, determined, bound, drawn))
         else:
             determined = felt >= FLAT and variable.name not in kept
             findings.append(Finding(variable, everything[variable.name], False, np.nan, np.nan, felt, determined))
@@ -208,7 +214,7 @@ def _warnings(
         f"{f.variable.name} = {f.value:.4g} is at its {f.at_bound} bound ({f.variable.lower:g} to {f.variable.upper:g}): a "
         "better fit of these tests with this model needs a value outside the bounds."
         for f in findings
-        if f.at_bound
+        if f.at_bound and f.drawn
     ]
     material = fit.evaluator.material(values)
     told += unloading(fit.evaluator.material(values, **SETTINGS), fit.task.items, answers)

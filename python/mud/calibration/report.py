@@ -14,7 +14,7 @@ from .. import _native
 from ..errors import MudError
 from ..material import TESTED
 from ..namelist import LONGEST, quoted
-from ..plots import COLOURS, logarithmic, pyplot
+from ..plots import COLOURS, logarithmic, pyplot, style
 from ..registry import parameters
 from .calibrate import UNDERSTOOD, Calibration
 from .diagnosis import origin_of
@@ -401,6 +401,7 @@ def _matrix(names: list[str], matrix: np.ndarray) -> list[str]:
     ]
 
 
+@style()
 def _pictures(result: Calibration, folder: pathlib.Path) -> list[pathlib.Path]:
     """Curves against the laboratory, a few tests a picture, fitted and held out apart."""
     plt, made = pyplot(), []

@@ -91,6 +91,8 @@ def use_of(
             "liquefaction": "csr",
         }[test.kind]
     ]
+    if test.kind in ("drained", "undrained", "modulus") and max(first or 0.0, last or 0.0) > 1:
+        raise InputError(f"first and last of a {test.kind} test are strains as fractions, not in per cent")
     size, note = np.abs(lead), ""
     by_stress = test.kind in ("oedometer", "isotropic")
     if by_stress and first is None and size[0] < SETTLED and np.sum(size >= SETTLED) >= FEWEST_ROWS[test.kind]:
@@ -278,8 +280,9 @@ def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[St
         Stage(test.kind, eps_a_end=float(np.copysign(end, last)), increment=step, output_interval=step)
         for end, (_, step) in zip(ends, STRAIN_INCREMENTS)
     ]
-    start = test.sigma_r if test.kind == "drained" else float(test["p"][0] - test["q"][0] / 3)
-    return stages, {"p_eff": start, "void_ratio": test.e_0, "suction": test.suction}
+    radial, q = test.start_of_shear()
+    start = {"sigma_a": radial + q, "sigma_r": radial} if q else {"p_eff": radial}
+    return stages, {**start, "void_ratio": test.e_0, "suction": test.suction}
 
 
 def turns(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import InputError
 from .effective import SHEAR, effective_stresses, pore_pressure, usual_p_and_q
-from .heads import STRESSES, Head
+from .heads import STRESSES, UNITS, Head
 from .sheets import Sheet, read_sheets
 from .steps import noise_of, without_noise
 
@@ -41,9 +41,17 @@ FEWEST_ROWS |= {"cyclic": 1, "stiffness": 1, "modulus": 1, "liquefaction": 1}
 LARGEST_FRACTION = {"eps_a": 0.9, "eps_v": 0.3, "gamma": 1.5}
 SMALLEST_PERCENT = 0.6  # a shear test in per cent goes further: less means fractions
 SMALLEST_VOLUME = 1e-3  # a drained test to eps_a of 0.05 or more changes its volume by more
-TOO_SMALL, TOO_LARGE = 2.0, 1.0e5  # [kPa]; a largest stress outside means another unit
+TOO_LARGE = 1.0e5  # [kPa]; a largest stress above means another unit
+# And one below: of p_0 (also at 1 g) or another, for each without and with a unit.
+SMALLEST = {False: (20.0, 2.0), True: (0.5, 0.0)}
+LARGEST_AMPLITUDE = 0.03  # of a strain under a name without unit: more means per cent
+# What has one value in a test, and the share by which a record of it may scatter; each row of ROWS_APART is a test of its own.
+ONE, ROWS_APART = {"e_0": 2e-3, "p_0": 0.1, "amplitude": 0.1}, ("stiffness", "modulus", "liquefaction")
 HELD = 0.15  # share by which p - q/3 may leave its median where the radial stress is held
 TOTAL = 0.02  # share of p at the start by which p - q/3 moves at least in an undrained test that is sheared
+# Where a shear test begins: share of its largest q up to which it has not been sheared, strains up to which it has not
+# moved, or had another zero; what a volumetric strain scatters by; share of the radial stress that q has from anisotropy on.
+UNSHEARED, STRAINLESS, MOVED, VOLUME_SCATTER, ANISOTROPIC = 0.05, 1e-4, 2e-3, 2.5e-3, 0.15
 # What leads the path of a test, and whether by its logarithm.
 LEADS = {"drained": ("eps_a", False), "undrained": ("eps_a", False), "oedometer": ("sigma_a", True)}
 LEADS |= {"isotropic": ("p", True), "retention": ("suction", True), "cyclic": ("cycle", False)}
@@ -60,7 +68,6 @@ RANGES = (
     ("G_max", 0.0, 1e7, "", " (in Pa call the column G_max_Pa, in kPa G_max_kPa)"),
 )
 # Sizes that are doubted where the head has no unit.
-SMALLEST_START = 0.5  # [kPa] largest p_0 of a test, also at 1 g: less means MPa
 SOFTEST = 1e3  # [kPa]; sand has a larger G_max: less means MPa
 DRAINS = 0.3  # [kPa], 3 cm of water: a retention test goes further
 SHEARED, STILL, NARROW = 1e-2, 0.7, 0.04  # at this shear strain soil has less of G_max left, and more damping
@@ -70,6 +77,7 @@ DAMPED, LEAST = 1e-3, 5e-3  # at this one it has more damping
 COMPRESSES = 4e-5  # [kPa^-1/2] strain of compression over the growth of stress^(1/2); stiffer by ten than dense sand is
 WEAK, FALLEN = 0.75, 0.15  # shares of the strength, and of the fall of eps_v that has happened by then: see _check_volume
 SLOPE_MISFIT = 0.5  # share of eps_v by which e may contradict it before the signs are doubted
+SETTLES = 1.5e-3  # scatter of a void ratio in compression
 DILATES = 1e-3  # volumetric strain below its negative is dilatancy, not scatter
 
 
@@ -122,6 +130,13 @@ class LaboratoryTest:
         if "sigma_r" in self.columns:
             return float(np.median(self["sigma_r"]))
         return float(np.median(self["p"] - self["q"] / 3))
+
+    def start_of_shear(self) -> tuple[float, float]:
+        """Effective radial and deviator stress [kPa] from which a shear test starts: the latter is that of the first row where
+        it is large before the sample has moved, for then consolidation was anisotropic; else 0."""
+        q = float(self["q"][0])
+        radial = self.sigma_r if self.kind == "drained" else float(self["p"][0] - q / 3)
+        return radial, q if abs(self["eps_a"][0]) <= STRAINLESS and abs(q) > ANISOTROPIC * radial else 0.0
 
 
 def read_table(path: str | os.PathLike, kind: str) -> list[LaboratoryTest]:
@@ -254,6 +269,8 @@ def _test(
         cells = [cells[at].strip() for _, cells in rows]
         if head.quantity in words:
             words[head.quantity] = cells[0]
+            if len({cell for cell in cells if cell}) > 1:
+                raise InputError(f"{where}: {head.title} changes; what has another {head.quantity} is a test of its own")
         if head.quantity in ("", *TEXTS):
             continue
         if head.quantity in ("e", "e_0") and not any(cells) and kind in SHEAR:
@@ -265,15 +282,19 @@ def _test(
         if head.quantity in STRAINS:
             _check_percent(place, name, kind, head, given, numbers)
         values = head.inside(given)
-        least = TOO_SMALL if head.quantity != "p_0" else SMALLEST_START if not head.unit else 0.0
+        least = SMALLEST[head.quantity == "p_0"][head.unit != ""]
         if head.quantity in ("q", "p", "p_0", "sigma_a", "sigma_r") and not least <= np.max(np.abs(values)) <= TOO_LARGE:
             raise InputError(
                 f"{where}: the largest {head.title} is {np.max(np.abs(given)):g}; stresses are in kPa unless the "
-                "name says _MPa or _Pa, and a test of soil reaches between "
-                + ("0.5 kPa (less: call the column p_0_kPa) and 100 MPa" if head.quantity == "p_0" else "2 kPa and 100 MPa")
+                f"name says _MPa, _bar or _Pa, and a test of soil reaches between {least:g} kPa"
+                + (f" (less: call the column {head.quantity}_kPa)" if not head.unit else "")
+                + " and 100 MPa"
             )
-        if head.quantity == "amplitude" and words["cycle_by"] in ("eps_a", "gamma") and head.unit not in ("", "percent"):
-            raise InputError(f"{where}: an amplitude of {words['cycle_by']} is a strain, not a stress")
+        if head.quantity in ONE and kind not in ROWS_APART and np.ptp(values) > ONE[head.quantity] * np.max(np.abs(values)):
+            raise InputError(
+                f"{where}: {head.title} goes from {np.min(given):g} to {np.max(given):g}; a test has one. What has another is a "
+                "test of its own, and a void ratio of every row is called e"
+            )
         if head.quantity in STRESSES:
             stresses[head.quantity, head.state] = head.title, values
         elif head.quantity == "u":
@@ -283,6 +304,9 @@ def _test(
     pressure, since, told = pore_pressure(kind, pressures)
     if pressure is not None:
         columns["u"] = pressure
+    amplitude = next((head for head in heads if head.quantity == "amplitude"), None)
+    if amplitude:
+        _check_amplitude(where, words["cycle_by"], amplitude, columns["amplitude"])
     understood += [*told, *effective_stresses(where, kind, stresses, columns, since)]
     understood += usual_p_and_q(where, kind, columns)
     test = LaboratoryTest(name, kind, columns, source, numbers, understood=understood, **words)
@@ -310,7 +334,33 @@ def _test(
         _complete_drained(test)
     elif kind == "undrained" and "e" not in test and "e_0" in test:
         test.columns["e"] = test["e_0"].copy()  # the volume is held
+    if kind in SHEAR:
+        _check_start(place, test)
+    if kind == "cyclic" and "eps_v" in test and test["eps_v"][-1] < -DILATES:
+        told = "dilation, because compression is positive: sand contracts by cycles"
+        test.understood.append((f"eps_v = {test['eps_v'][-1]:.3g} at the end of test {name}", told))
     return test
+
+
+def _check_start(place: str, test: LaboratoryTest) -> None:
+    """Refuses strains with another zero than the start of shearing; tells where the model starts other than may be expected."""
+    strain, q = test["eps_a"], test["q"]
+    unsheared = abs(q[0]) <= UNSHEARED * np.max(np.abs(q)) or abs(strain[0]) <= STRAINLESS
+    for name, least in (("eps_a", MOVED), ("eps_v", VOLUME_SCATTER)):
+        if unsheared and name in test and abs(test[name][0]) > least:
+            raise InputError(
+                f"{place}:{test.lines[0]}: test {test.name}: {name} begins at {test[name][0]:g}, before the sample is sheared: "
+                "strains count from the start of shearing, and e_0 is the void ratio there. Take the first value off the others"
+            )
+    if np.median(q) < 0:
+        test.understood.append((f"a negative q in test {test.name}", "extension, because compression is positive"))
+    q_0 = test.start_of_shear()[1]
+    if q_0:
+        told = "the start of the model, of a sample that was consolidated anisotropically"
+        test.understood.append((f"q = {q_0:.4g} kPa without axial strain in test {test.name}", told))
+    if test.suction > 0:
+        told = "Bishop's effective stress: net stresses must be raised by S_w times the suction"
+        test.understood.append((f"a stress at a suction of {test.suction:g} kPa in test {test.name}", told))
 
 
 def _drop_noise(place: str, test: LaboratoryTest, noise: list[tuple[int, float]]) -> None:
@@ -368,6 +418,18 @@ def _check_percent(place: str, name: str, kind: str, head: Head, values: np.ndar
         )
 
 
+def _check_amplitude(where: str, by: str, head: Head, values: np.ndarray) -> None:
+    """The amplitude of a strain or of a stress, by its unit and its size."""
+    measure, wanted = UNITS[head.unit][0] if head.unit else "", "share" if by in STRAINS else "stress"
+    if measure and measure != wanted:
+        raise InputError(f"{where}: an amplitude of {by} is a {'strain' if by in STRAINS else 'stress'}; {head.title} is none")
+    if not head.unit and by in STRAINS and np.max(np.abs(values)) > LARGEST_AMPLITUDE:
+        raise InputError(
+            f"{where}: an amplitude of {by} of {np.max(np.abs(values)):g}, and the name has no unit: in per cent call the column "
+            "amplitude_percent, as a fraction amplitude_fraction"
+        )
+
+
 def _check_values(place: str, test: LaboratoryTest) -> None:
     where = f"{place}, test {test.name}"
 
@@ -390,6 +452,12 @@ def _check_values(place: str, test: LaboratoryTest) -> None:
                 f"{where}: q is {'negative' if way > 0 else 'positive'} while eps_a "
                 f"{'grows' if way > 0 else 'falls'}: one of the two has its sign swapped; compression is positive, "
                 "and q = sigma_a - sigma_r"
+            )
+    if test.kind == "cyclic":
+        bad = test["cycle"] != np.round(test["cycle"])
+        if bad.any():
+            raise InputError(
+                f"{first(bad)}: cycle = {test['cycle'][int(np.argmax(bad))]:g}; a row stands at the end of a whole cycle"
             )
     for quantity in ("gamma", "csr", "N", "p_0", "G_max", "G_ratio"):
         if test.kind in ("stiffness", "modulus", "liquefaction") and quantity in test and np.any(test[quantity] <= 0):
@@ -474,6 +542,11 @@ def _check_stress(where: str, test: LaboratoryTest) -> None:
             raise InputError(
                 f"{where}: e grows from {test['e'][first]:g} to {test['e'][last]:g} while the stress grows from "
                 f"{stress[first]:g} to {stress[last]:g} kPa: are the rows in the order of the test, and is e the void ratio?"
+            )
+        if stress[-1] >= stress[first] and test["e"][-1] > test["e"][first] + SETTLES:
+            raise InputError(
+                f"{where}: e is {test['e'][first]:g} at {stress[first]:g} kPa before the largest stress and {test['e'][-1]:g} at "
+                f"{stress[-1]:g} kPa behind it: no sample becomes looser by compression. Are the rows in the order of the test?"
             )
     if test.kind == "retention":
         driest, wettest = int(np.argmax(test["suction"])), int(np.argmin(test["suction"]))

@@ -9,6 +9,8 @@ import pathlib
 import tomllib
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from .._texts import text_of_bytes
 from ..errors import InputError
 from ..material import Material
@@ -20,6 +22,9 @@ KEYS = ("name", "title", "reference", "start", "seed", "known", "tables", "held_
 TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "only", "name")
 
 
+UNIT = (50.0, 200.0)  # [kPa] between them an atmosphere is in kPa
+FRACTIONS = ("eps_v", "e", "S_w", "r_u", "G_ratio", "damping")
+LARGEST_SCATTER = 0.2  # of one of these: more means per cent
 LOOSER = 0.1  # [-] by which an unknown void ratio may lie beyond those of the other tests
 
 
@@ -55,7 +60,7 @@ class Task:
     notes: list[str] = dataclasses.field(default_factory=list)  #: sentences for the report
 
     def __post_init__(self):
-        self.base = dict(Material(self.start).items())
+        self.base = dict(in_kpa(Material(self.start)).items())
         values, self.origins = known_parameters(self.known, self.base)
         self.base.update({k: v for k, v in values.items() if k in self.base})
         turning = [item.test.name for item in self.fitted() if item.test.kind == "retention" and item.use.turning]
@@ -64,9 +69,12 @@ class Task:
             self.origins["hysteresis"] = f"the suction of {', '.join(turning)} turns"
         self.base.update({UNKNOWN + i.test.name: i.test.e_0 for i in self.items if i.test.unknown_e_0})
         self.fixed_variables = {k: v for k, v in values.items() if k not in self.base}
-        for name in self.bounds:
+        for name, (low, high) in self.bounds.items():
             if name not in VARIABLES:
                 raise InputError(f"bounds: {name} is not fitted; there are {', '.join(VARIABLES)}")
+            if not low < high or low <= 0 and VARIABLES[name].log:
+                above = ", above zero" * VARIABLES[name].log
+                raise InputError(f"bounds: {name} from {low:g} to {high:g}; a lower and then an upper bound{above}")
 
     def fitted(self) -> list[Item]:
         """Tests that are not held out."""
@@ -93,6 +101,15 @@ class Task:
             dataclasses.replace(v, lower=bounds[v.name][0], upper=bounds[v.name][1]) if v.name in bounds else v
             for v in [*chosen(kinds, unsaturated, self.base["hysteresis"] != 0, [*self.origins], self.groups), *unknown]
         ]
+
+
+def in_kpa(material: Material) -> Material:
+    """The material, if it is in the unit of the tests."""
+    if not UNIT[0] < material["p_atm"] < UNIT[1]:
+        raise InputError(
+            f"a material has p_atm = {material['p_atm']:g}, and the tests are in kPa; give it in kPa: Material.converted(factor)"
+        )
+    return material
 
 
 def make_task(
@@ -122,11 +139,27 @@ def make_task(
                 raise InputError(
                     f"scatter: a {table['kind']} test compares {', '.join(SCATTER[table['kind']])}, not {quantity}"
                 )
-        only = table.get("only")
+        if any(len(s) != 2 or not (0 <= min(s) and 0 < max(s) < np.inf) for s in scatter.values()):
+            raise InputError("scatter: a deviation has two numbers, absolute and as a share, from 0 on and not both of them 0")
+        for quantity, (absolute, share) in scatter.items():
+            if share > 1 or quantity in FRACTIONS and absolute > LARGEST_SCATTER:
+                raise InputError(
+                    f"scatter: {quantity} = {absolute:g}, {share:g}: shares and deviations of {', '.join(FRACTIONS)} are "
+                    f"fractions, not per cent, up to 1 and {LARGEST_SCATTER:g}"
+                )
+        weight = float(table.get("weight", 1.0))
+        if not 0 <= weight < np.inf:
+            raise InputError(f"weight = {weight:g}: it must be a number from 0 on")
+        there = [test.name for test in tests]
+        only = table.get("only", there)
+        only = [only] if isinstance(only, str) else only
+        strange = [one for one in only if one not in there]
+        if strange:
+            raise InputError(f"only: there is no test {strange[0]} in {table['file']}; there are {', '.join(there)}")
         for test in tests:
-            if only is None or test.name in only:
+            if test.name in only:
                 use = use_of(test, table.get("first"), table.get("last"), scatter, table.get("branch", "all"))
-                items.append(Item(test, use, float(table.get("weight", 1.0))))
+                items.append(Item(test, use, weight))
     names = [item.test.name for item in items]
     for held in held_out:
         if held not in names:

@@ -226,10 +226,14 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
                 f"known: {name} is neither a parameter of the library nor one of phi_c, G_max, G_max_p, G_max_e, "
                 f"{', '.join(PINNED.values())}"
             )
+        if name in values:
+            raise InputError(f"known: {name} is given twice, by itself and by {'phi_c' if name == 'M_c' else 'G_max'}")
         values[name], origins[name] = float(value), "known"
     for position, pin in PINNED.items():
         if position not in values:
             continue
+        if pin in values:
+            raise InputError(f"known: {position} and {pin} say the same; give one of them")
         for name in PINNED_WITH[position]:
             if name not in values:
                 raise InputError(

@@ -87,7 +87,7 @@ def answers_of(test: Test, folder: str | pathlib.Path) -> Answers:
         within = _within(time, start, start + test.interval)
         t, s, v = time[within] - start, moved[within] - moved[within][0], speed[within]
         peak, at = _peak(t, s)
-        load = _peak(t, force[within])[0] if device.buffer else device.peak
+        load = _peak(t, force[within])[0] if device.buffer else device.largest
         late = np.abs(v[t > 0.9 * test.interval])
         drops.append(
             Drop(

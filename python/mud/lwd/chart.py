@@ -11,7 +11,7 @@ import sys
 import time
 from dataclasses import dataclass, field
 
-from ..plots import COLOURS, LINES, pyplot
+from ..plots import COLOURS, LINES, pyplot, style
 
 INTERRUPTED = 130
 
@@ -88,6 +88,12 @@ def write_chart(places: list[Place], folder: pathlib.Path, material: str) -> Non
                 else ["", "", "", "", place.said]
             )
             table.writerow((f"{place.void_ratio:g}", f"{place.suction:g}", *numbers))
+    _draw(places, folder / "chart.png", material)
+
+
+@style()
+def _draw(places: list[Place], path: pathlib.Path, material: str) -> None:
+    """The modulus against suction, saturation and void ratio."""
     plt = pyplot()
     figure, axes = plt.subplots(1, 3, figsize=(12, 4), constrained_layout=True, sharey=True)
     ratios, suctions = ([*dict.fromkeys(getattr(p, n) for p in places)] for n in ("void_ratio", "suction"))
@@ -114,5 +120,5 @@ def write_chart(places: list[Place], folder: pathlib.Path, material: str) -> Non
     axes[0].set_ylabel("modulus [MN/m2]")
     axes[0].set_ylim(bottom=0)
     figure.suptitle(material, fontsize=10)
-    figure.savefig(folder / "chart.png", dpi=130)
+    figure.savefig(path, dpi=130)
     plt.close(figure)

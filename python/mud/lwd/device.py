@@ -15,6 +15,7 @@ from ..errors import InputError
 
 G = 9.81
 MOST = 1e4  # stress below a plate, of a wrong unit rather than of a device [kPa]
+SHORTEST, LIGHTEST, HIGHEST = 1e-3, 1e-4, 10.0  # likewise pulse [s], mass on the ground [Mg], height of fall [m]
 FLEXIBLE, RIGID = 2.0, math.pi / 2  # shape factors of a plate under uniform stress, and of a rigid one [-]
 
 
@@ -24,7 +25,7 @@ class Device:
 
     name: str
     standard: str  # where the test is described
-    peak: float  # of the half sine [kN]; without a load cell that of the formula
+    peak: float  # of the half sine [kN]; without a load cell that of the formula, also beside a record
     pulse: float  # duration of the half sine [s]
     radius: float  # of the plate [m]
     mass: float  # that rests on the ground: plate and guide [Mg]
@@ -53,6 +54,13 @@ class Device:
             t, f = force_of(self.record)
             return np.interp(time, t, f)
         return np.where((time > 0) & (time < self.pulse), self.peak * np.sin(np.pi * time / self.pulse), 0.0)
+
+    @property
+    def largest(self) -> float:
+        """Largest force on the plate [kN]; of a mass that falls that on a rigid base."""
+        if self.buffer:
+            return self.on_rigid_base()[0]
+        return float(force_of(self.record)[1].max()) if self.record else self.peak
 
     @property
     def flight(self) -> float:
@@ -125,6 +133,8 @@ def device_of(name: str, record: str | os.PathLike | None = None, **values: floa
             f"{OPTIONS[falls[0]]} lets a mass fall on a buffer, which makes the pulse, and {other} gives the pulse: "
             "leave one of the two out"
         )
+    if pulse and record is not None:
+        raise InputError(f"--force gives the measured pulse, and {OPTIONS[pulse[0]]} another: leave one of the two out")
     if falls and not device.buffer:
         raise InputError(f"{OPTIONS[falls[0]]} needs the stiffness of the buffer in kN/m: --buffer")
     needed = ("fall_mass", "fall") if device.buffer else () if record is not None else ("peak", "pulse")
@@ -139,13 +149,19 @@ def device_of(name: str, record: str | os.PathLike | None = None, **values: floa
     if record is not None:
         t, f = force_of(record)
         record = str(pathlib.Path(record).resolve())
-        device = replace(device, record=record, peak=float(f.max()), pulse=float(t[-1] - t[0]))
-    stress = (device.on_rigid_base()[0] if device.buffer else device.peak) / device.area
-    if stress > MOST:
-        raise InputError(
-            f"the plate presses with up to {stress:.3g} kPa, and devices stay below {MOST:g} kPa: forces are in kN, "
-            "the radius in mm, masses in kg and the buffer in kN/m"
-        )
+        device = replace(device, record=record, pulse=float(t[-1] - t[0]), peak=device.peak or float(f.max()))
+    stress, pulse = device.largest / device.area, device.on_rigid_base()[1] if device.buffer else device.pulse
+    for what, good in (
+        (f"the plate presses with up to {stress:.3g} kPa", stress <= MOST),
+        (f"the pulse lasts {1e3 * pulse:.3g} ms", pulse >= SHORTEST),
+        (f"{1e3 * device.mass:.3g} kg rest on the ground", device.mass >= LIGHTEST),
+        (f"the mass falls from {device.fall:g} m", device.fall <= HIGHEST),
+    ):
+        if not good:
+            raise InputError(
+                f"{what}, as in no device: forces are in kN, times in ms, the radius in mm, the fall in m, masses in kg and "
+                "the buffer in kN/m"
+            )
     return device
 
 

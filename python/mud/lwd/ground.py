@@ -214,7 +214,7 @@ def plate_of(test: Test, stands: list[str]) -> list[str]:
     if not device.buffer:
         shape = "file = 'force.txt'" if device.record else f"kind = 'half_sine' period = {device.pulse:g}"
         lines.append(f"&history name = 'fall' {shape} stages = {quoted(test.drops)} /")
-        thrown = f" force = {-device.peak:.9g} history = 'fall'"
+        thrown = f" force = {-device.largest:.9g} history = 'fall'"
     if test.tied:
         weight = device.mass * G / device.area
         return [

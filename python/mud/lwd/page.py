@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..host import HostRun
-from ..plots import COLOURS, LINES, pyplot
+from ..plots import COLOURS, LINES, pyplot, style
 from .device import record_of
 from .ground import Test, point_of
 from .measure import Measured, unit_of
@@ -20,6 +20,7 @@ SPLIT = ([0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5])  # a 6-node triangle as fou
 SHOWN = 0.02  # force above which a record and a pulse begin [share of the peak]
 
 
+@style()
 def picture(measured: Measured, path: pathlib.Path, record: str | None = None) -> list[str]:
     """Sketch, last drop against time, pressures, drops, the ground at the peak. Returns what a record shows."""
     plt = pyplot()
@@ -47,7 +48,7 @@ def _sketch(axes, test: Test):
         top = low
     axes.fill_between([0, a], 0, 0.25 * a, color="0.3", lw=0)
     axes.annotate("", (0.5 * a, 0.3 * a), (0.5 * a, 1.9 * a), arrowprops={"arrowstyle": "-|>", "color": "k"})
-    pulse = f"{device.peak:.3g} kN\n" + ("recorded" if device.record else f"half sine of {1e3 * device.pulse:g} ms")
+    pulse = f"{device.largest:.3g} kN\n" + ("recorded" if device.record else f"half sine of {1e3 * device.pulse:g} ms")
     if device.buffer:
         pulse = f"{1e3 * device.fall_mass:g} kg from {device.fall:g} m\non {device.buffer:g} kN/m"
     axes.text(0.75 * a, 1.1 * a, f"{device.name}: {pulse}", fontsize=8, va="center")

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 from ..errors import InputError
-from .accuracy import EXIT_CODES, MET, Study, share, sum_of, write_table
+from .accuracy import EXIT_CODES, MET, REFUSED, Study, share, sum_of, write_table
 from .effects import LEAST_RUN, SHARE, Effects, Silent, write_scene
 from .pictures import accuracy_picture, effects_picture, price_picture
 from .runs import BudgetUsedUp, Failed, Scene, write_csv
@@ -149,6 +149,8 @@ def reduced(scene: Scene, args) -> pathlib.Path:
     except BudgetUsedUp:
         scene.say("effects: the budget ends before the pilots do; all stays as the scene has it")
     except Failed as failure:
+        if failure.code in REFUSED:
+            raise InputError(str(failure)) from failure
         print(f"mud_study: effects: {failure}; all stays as the scene has it", file=sys.stderr)
     scene.used += study.spent
     for row in rows:

@@ -268,7 +268,8 @@ class Effects:
         else:
             if any(f.cut for f in failed.values()):
                 raise Silent(f"a pilot takes more than {100 * self.share:g} % of the run")
-            raise Failed(f"the pilot of the scene fails, so that nothing can be said of any effect: {failure.said}")
+            last = list(failed.values())[-1]  # of the cheapest reading
+            raise Failed(f"the pilot of the scene fails, so that nothing can be said of any effect: {last.said}", last.code)
         for row in base[0]:
             row.why = f"cannot be put in: {next(iter(failed.values())).said}"
         self._list_others()
