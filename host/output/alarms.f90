@@ -6,10 +6,11 @@ module alarms
    use contact_alarm, only: warn_of_overlaps, warn_of_penetration
    use faults, only: fault_t
    use kinds, only: wp
+   use model_types, only: now_in
    use porous_domain, only: is_present, strain_of
    use pressure_alarm, only: lines_t, warn_of_pressures
    use run_observer, only: observer_t, STAGE_BEGINS, STEP
-   use run_state, only: run_t, now_in
+   use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning, is_told

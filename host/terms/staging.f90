@@ -193,7 +193,6 @@ contains
          do i = 1, dofs%n
             if (.not. self%absent(i)) cycle
             c%fixed(i) = .true.
-            c%limited(i) = .false.
             c%target(i) = problem%state%x(dofs%field(i), dofs%node(i))
             if (dofs%field(i) > DISPLACEMENTS) c%air(dofs%node(i)) = .false.
          end do
