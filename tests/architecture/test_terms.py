@@ -17,7 +17,7 @@ WORDS = {
     "friction": (r"friction", "contact"),
     "plane_plates": (r"plane_(plates|motion)|in_plane|\b(rotation|moment|lever)\b|turn_(node|group)", None),
     "run_off": (r"run_off\b|(\b|_)rain(\b|_)|ponding|stuck|releases|begin_sides", None),
-    "staging": (r"staging|held_up|staged|mark_absent", None),
+    "staging": (r"staging|held_up|staged|mark_absent|%(joins|growth)\b|model%ground\b", None),
     "strength": (r"strength", None),
     "viscosity": (r"viscos", None),
 }
