@@ -11,7 +11,7 @@ module acting_places
    use triangle_mesh, only: group_of_t, triangles_beside
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, nodes_of_ground, given_in, are_in, share_an_edge, check_actions
+   public :: facing_edges, acting_stages, ground_of, nodes_of_ground, given_in, are_in, share_an_edge, check_actions
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3

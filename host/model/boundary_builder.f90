@@ -258,6 +258,10 @@ contains
                   'kind of load, see host/SCENE.md', REQUIRED)
       load%of_body = load%kind == LOAD_OF_BODY
       if (load%of_body) load%kind = LOAD_FORCE_Z
+      load%falls = load%kind == LOAD_RAIN
+      load%limits = load%falls
+      if (load%falls) load%kind = LOAD_WATER
+      load%flows = any(load%kind == [LOAD_WATER, LOAD_AIR])
       call k%number('value', load%value, -BIG, BIG, 'value of the load, at the datum [kPa, m/s, kN, kN m]', &
                     REQUIRED)
       call k%number('value_slope', load%value_slope, -BIG, BIG, 'change of the value with z [kPa/m, 1/s, kN/m]')
@@ -269,13 +273,13 @@ contains
       if (fault%code /= 0) return
       if (load%kind < LOAD_FORCE_R .and. size(model%domain%mesh%groups(load%group)%edges, 2) == 0) then
          call raise(fault, EXIT_GROUP, place_of(load)//'group '''//trim(load%group_name)//''' has no edges to load.')
-      else if ((any(load%kind == [LOAD_WATER, LOAD_RAIN]) .and. .not. model%domain%with_w) .or. &
+      else if ((load%kind == LOAD_WATER .and. .not. model%domain%with_w) .or. &
                (load%kind == LOAD_AIR .and. .not. model%domain%with_c)) then
          call raise(fault, EXIT_INPUT, place_of(load)//'the scene has no field for such an inflow; see '// &
                     'fields in &scene.')
       end if
       load%what = '&load'
-      load%along_normal = any(load%kind == [LOAD_PRESSURE, LOAD_RAIN])
+      load%along_normal = load%kind == LOAD_PRESSURE .or. load%falls
       load%bears = load%kind == LOAD_PRESSURE
       model%loads = [model%loads, load]
       model%actions = [model%actions, load%action_t]

@@ -6,7 +6,7 @@ module boundary_conditions
    use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of, &
       SPACINGS
-   use prescribed_values, only: constraint_t, begin_sides, is_released
+   use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: PRESCRIBED_P_A
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
@@ -24,11 +24,11 @@ contains
       integer :: i
 
       associate (n => model%dofs%n, nodes => size(model%domain%mesh%x, 2))
-         allocate (constraint%fixed(n), constraint%limited(n), source=.false.)
-         allocate (constraint%limited_by(n), constraint%releases(n), constraint%body(n), source=0)
+         allocate (constraint%fixed(n), source=.false.)
+         allocate (constraint%limited_by(n), constraint%body(n), source=0)
          allocate (constraint%air(nodes), source=.false.)
-         allocate (constraint%target(n), constraint%load_0(n), constraint%load_1(n), constraint%rain_0(n), &
-                   constraint%rain_1(n), constraint%offset(n), constraint%mass(n), source=0.0_wp)
+         allocate (constraint%target(n), constraint%load_0(n), constraint%load_1(n), constraint%offered_0(n), &
+                   constraint%offered_1(n), constraint%offset(n), constraint%mass(n), source=0.0_wp)
          allocate (constraint%air_target(nodes), source=0.0_wp)
       end associate
       allocate (constraint%linear(0), constraint%springs(0))
@@ -42,7 +42,7 @@ contains
    end function new_constraint
 
    !> Prescribed values at the end of a step; some unknowns are held at what they were at the start of the stage.
-   !> docs/theory/host.md sections 3.5, 7.1 and 7.7. Accelerations: see follow_accelerations.
+   !> docs/theory/host.md sections 3.5 and 7.1. Accelerations: see follow_accelerations.
    subroutine constrain_step(time, problem)
       real(wp), intent(in) :: time   !< At its end [s].
       type(problem_t), intent(inout) :: problem
@@ -55,7 +55,6 @@ contains
          factors = [(factor_at(model, model%fixes(i)%amplitude, time), i=1, size(factors))]
          constraint%fixed = by > 0
          constraint%air = air_by > 0
-         constraint%limited = .false.
          do i = 1, size(by)
             if (by(i) == 0) cycle
             associate (fix => model%fixes(by(i)))
@@ -73,8 +72,7 @@ contains
       end associate
    end subroutine constrain_step
 
-   !> What follows from the prescribed values of supports and terms. Pressures with a limit begin on that side of it on
-   !> which they stand at the start of the step.
+   !> What follows from the prescribed values of supports and terms.
    subroutine complete_constraint(problem)
       type(problem_t), intent(inout) :: problem
       integer :: i, node
@@ -95,7 +93,6 @@ contains
                constraint%air(node) = .false.
             end associate
          end do
-         call begin_sides(dofs, problem%state%x, constraint)
          if (problem%stage%has_rates) return
          do i = 1, dofs%n
             if (dofs%field(i) <= DISPLACEMENTS) cycle

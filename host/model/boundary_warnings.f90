@@ -6,7 +6,7 @@ module boundary_warnings
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
    use model_types, only: model_t, acting_t, fix_t
-   use scene_parts, only: amplitude_at, place_of, LOAD_WATER, LOAD_RAIN, LOAD_AIR, PRESCRIBED_P_A, PRESCRIBED_WORDS
+   use scene_parts, only: amplitude_at, place_of, LOAD_AIR, PRESCRIBED_P_A, PRESCRIBED_WORDS
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -112,7 +112,7 @@ contains
 
       do i = 1, size(model%loads)
          associate (one => model%loads(i), edges => model%domain%mesh%groups(model%loads(i)%group)%edges)
-            if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
+            if (.not. one%flows) cycle
             own = merge(PRESCRIBED_P_A, AT_P_W, one%kind == LOAD_AIR)
             do s = 1, size(model%stages)
                if (.not. one%in_stage(s)) cycle
@@ -184,7 +184,7 @@ contains
       end do
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (all(one%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
+            if (.not. one%flows) cycle
             call look_at_stages(one, 'the inflow')
             associate (edges => edges_with_flow(model%domain, one%group))
                if (.not. all(edges)) call print_warning(place_of(one)//'fluid flows in through '// &

@@ -8,7 +8,7 @@ module given_pressures
    use faults, only: fault_t, raise
    use model_types, only: model_t, initial_t
    use porous_domain, only: domain_t, COUPLED, UNDRAINED, DRY
-   use scene_parts, only: place_of, PRESCRIBED_WORDS, LOAD_WATER, LOAD_RAIN, LOAD_AIR
+   use scene_parts, only: place_of, PRESCRIBED_WORDS
    use texts, only: whole
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
@@ -141,7 +141,7 @@ contains
          end do
          do i = 1, size(model%loads)
             associate (load => model%loads(i))
-               if (all(load%kind /= [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) cycle
+               if (.not. load%flows) cycle
                if (any(edges_with_flow(domain, load%group))) cycle
                call raise(fault, EXIT_GROUP, place_of(load)//'no edge of '''//trim(load%group_name)//''' belongs '// &
                           'to a region with drainage = ''coupled'': nothing can flow in; leave this &load out, or '// &

@@ -2,11 +2,12 @@
 !> The state at the start of a scene: pressures, degree of saturation, effective stress.
 !> docs/theory/host.md section 8.
 module initial_conditions
+   use acting_places, only: ground_of
    use exit_codes, only: EXIT_MATERIAL
    use kinds, only: wp
    use model_types, only: model_t, gravity_at, initial_t
    use given_pressures, only: pressures_at_start, water, suction
-   use porous_domain, only: model_state_t, new_state_of, pressures_at, COUPLED, DRY, is_present
+   use porous_domain, only: model_state_t, new_state_of, pressures_at, COUPLED, DRY
    use material_point, only: material_t, range_t
    use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
@@ -46,12 +47,8 @@ contains
       allocate (tension%uses(size(model%domain%regions)))
       state = new_state_of(model%domain)
       state%gravity = gravity_at(model, state%time)
-      if (allocated(model%ground)) then
-         state%present = model%ground(:, 1)
-         state%joins = spread(.false., 1, size(state%present))
-      end if
       call set_nodes(model, state)
-      ground = ground_at_start(model, [(is_present(state, e), e=1, size(model%domain%region_of))])
+      ground = ground_at_start(model)
       do e = 1, size(model%domain%mesh%t6, 2)
          associate (region => model%domain%regions(model%domain%region_of(e)), one => ground%initials(ground%of(e)))
             do g = 1, model%domain%rule
@@ -61,7 +58,7 @@ contains
                      model%domain%carriers(:model%domain%n_carriers(e), e)))
                   p_c = pressures(2)
                   ! New ground brings the water of its own suction, whatever its first nodes have.
-                  if (.not. is_present(state, e)) p_c = suction(one, gp%x(2))
+                  if (.not. ground%present(e)) p_c = suction(one, gp%x(2))
                   if (region%with_c) then
                      sat = region%law%retention(p_c, state%e(p))
                      state%s(p) = sat%s
@@ -160,23 +157,22 @@ contains
    end subroutine clear_dry_nodes
 
    !> Which &initial every element has, of several the last one, and the ground that weighs.
-   function ground_at_start(model, present) result(ground)
+   function ground_at_start(model) result(ground)
       type(model_t), intent(in) :: model
-      logical, intent(in) :: present(:)   !< (elements) In the first stage.
       type(ground_t) :: ground
       integer :: i
 
       allocate (ground%initials(size(model%initials) + 1))
       ground%initials(:size(model%initials)) = model%initials
-      allocate (ground%of(size(present)), source=size(ground%initials))
+      ground%present = ground_of(model, 1)
+      allocate (ground%of(size(ground%present)), source=size(ground%initials))
       do i = 1, size(model%initials)
          associate (elements => model%domain%mesh%groups(model%initials(i)%group)%elements)
             ground%of(elements) = i
          end associate
          ground%alike = ground%alike .and. .not. model%initials(i)%follows
       end do
-      ground%present = present
-      ground%alike = ground%alike .and. all(present) .and. size(model%domain%regions) == 1 .and. &
+      ground%alike = ground%alike .and. all(ground%present) .and. size(model%domain%regions) == 1 .and. &
                      all(ground%of == ground%of(1))
       if (.not. ground%alike) ground%strips = new_strips(model%domain%mesh)
    end function ground_at_start

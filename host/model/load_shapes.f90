@@ -7,7 +7,7 @@ module load_shapes
    use kinds, only: wp
    use model_types, only: model_t, load_t, value_at
    use porous_domain, only: edge_point_t, points_of_edge, PER_EDGE
-   use scene_parts, only: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_RAIN, LOAD_AIR, LOAD_FORCE_R
+   use scene_parts, only: LOAD_PRESSURE, LOAD_SHEAR_R, LOAD_SHEAR_Z, LOAD_WATER, LOAD_AIR, LOAD_FORCE_R
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -55,7 +55,7 @@ contains
       associate (group => model%domain%mesh%groups(load%group))
          if (load%kind < LOAD_FORCE_R) then
             acts = .true.
-            if (any(load%kind == [LOAD_WATER, LOAD_RAIN, LOAD_AIR])) acts = edges_with_flow(model%domain, load%group)
+            if (load%flows) acts = edges_with_flow(model%domain, load%group)
             edges = facing_edges(model, load%group, load%in_stage)
             do e = 1, size(edges, 2)
                if (.not. acts(e)) cycle
@@ -97,10 +97,8 @@ contains
                case (LOAD_SHEAR_Z)
                   call add(AT_U_Z, i, n(i)*area*value)
                case (LOAD_WATER)
-                  call add(AT_P_W, i, m(i)*area*value)
-               case (LOAD_RAIN)
-                  ! It falls vertically, on what looks upwards.
-                  call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*ring*value)
+                  if (load%falls) call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*ring*value)
+                  if (.not. load%falls) call add(AT_P_W, i, m(i)*area*value)
                case (LOAD_AIR)
                   call add(AT_P_W, i, m(i)*area*value)
                   call add(AT_P_C, i, m(i)*area*value)

@@ -18,12 +18,12 @@ module model_types
    use retention_curves, only: retention_t
    use scene_parts, only: origin_t, scene_item_t, amplitude_t, stage_t, amplitude_at, NAME_LENGTH, NEVER
    use solution, only: solution_t
-   use texts, only: LENGTH
+   use texts, only: short, LENGTH
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
    public :: model_t, problem_t, term_t, term_box_t
-   public :: factor_at, factors_of, gravity_at, value_at, unknowns_of, share_over
+   public :: factor_at, factors_of, gravity_at, value_at, unknowns_of, share_over, now_in
    public :: action_t, acting_t, initial_t, fix_t, load_t, coordinate_t, plate_t, contact_pair_t, tie_t, point_t, &
              given_region_t, curve_t, SPACINGS
 
@@ -62,17 +62,19 @@ module model_types
       character(LENGTH) :: group_name = ''
       real(wp) :: value = 0.0_wp, value_slope = 0.0_wp, datum = 0.0_wp
       logical :: of_body = .false.                   !< It acts on a coordinate of a plate alone.
+      logical :: limits = .false.                    !< p_w has a largest value there, past which water leaves.
    end type acting_t
 
    type, extends(acting_t) :: fix_t
       integer :: field = 0                           !< AT_... of unknown_fields, or PRESCRIBED_P_A.
       real(wp) :: until = NEVER                      !< Not after this time [s].
       logical :: hold = .false., acceleration = .false.
-      logical :: limits = .false.                    !< The value is the largest p_w: water leaves, none enters.
    end type fix_t
 
    type, extends(acting_t) :: load_t
       integer :: kind = 0                            !< LOAD_...
+      logical :: flows = .false.                     !< It is the inflow of a fluid.
+      logical :: falls = .false.                     !< It comes from above, on what looks upwards.
       real(wp), allocatable :: vector(:)             !< (unknowns) At a factor of 1 [kN, m3/s].
    end type load_t
 
@@ -177,7 +179,7 @@ module model_types
 
    type, abstract :: term_t
    contains
-      procedure :: begin_run, begin_stage, before_step, prescribe, complete, accept, exchange, remark
+      procedure :: begin_run, begin_stage, before_step, prescribe, limit, choose, complete, accept, exchange, remark
    end type term_t
 
    !> An element of a list of terms.
@@ -239,6 +241,14 @@ contains
       share = min(1.0_wp, max(0.0_wp, (time - problem%at%t_start)/problem%stage%duration))
    end function share_over
 
+   !> Where a run is at the end of the step under way, for a warning.
+   function now_in(problem) result(text)
+      class(problem_t), intent(in) :: problem
+      character(:), allocatable :: text
+
+      text = 'stage '//trim(problem%stage%name)//', time '//short(problem%next%time)//' s: '
+   end function now_in
+
    !> The start of a run, with its initial state.
    subroutine begin_run(self, problem, fault)
       class(term_t), intent(inout) :: self
@@ -263,12 +273,29 @@ contains
       type(fault_t), intent(inout) :: fault
    end subroutine before_step
 
-   !> Behind the supports of the scene: values at the end of the step that the term prescribes or limits.
+   !> Behind the supports of the scene: values at the end of the step that the term prescribes.
    subroutine prescribe(self, time, problem)
       class(term_t), intent(in) :: self
       real(wp), intent(in) :: time   !< At the end of the step [s].
       type(problem_t), intent(inout) :: problem
    end subroutine prescribe
+
+   !> Behind all that is prescribed: upper limits of unknowns, each held where it stands at its limit at the start of
+   !> the step and free where it lies below.
+   subroutine limit(self, time, problem)
+      class(term_t), intent(inout) :: self
+      real(wp), intent(in) :: time   !< At the end of the step [s].
+      type(problem_t), intent(inout) :: problem
+   end subroutine limit
+
+   !> After an iteration of Newton's method: unknowns that the term holds or frees. The step is solved only when no term
+   !> changes one.
+   subroutine choose(self, problem, residual, changed)
+      class(term_t), intent(inout) :: self
+      type(problem_t), intent(inout) :: problem
+      real(wp), intent(in) :: residual(:)    !< (unknowns) With minus sign and all rows kept [kN, m3/s].
+      logical, intent(inout) :: changed      !< Becomes true where this term changes one.
+   end subroutine choose
 
    !> After a step that Newton's method has solved: values of problem%next that follow from its unknowns.
    subroutine complete(self, problem)

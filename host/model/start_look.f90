@@ -3,7 +3,7 @@
 !> displacements that are zeroed, plates, pulses that are over. What they tell is allowed, but usually a mistake.
 module start_look
    use kinds, only: wp, PI
-   use acting_places, only: nodes_of_ground, given_in
+   use acting_places, only: ground_of, nodes_of_ground, given_in
    use given_pressures, only: water, suction
    use history_shapes, only: slope_beside
    use warnings, only: print_warning
@@ -114,10 +114,10 @@ contains
       integer :: s, i
 
       i = findloc(model%actions%damps, .true., dim=1)
-      if (i == 0 .or. .not. allocated(model%ground)) return
+      if (i == 0) return
       do s = 2, size(model%stages)
          if (.not. model%stages(s)%has_inertia) cycle
-         if (all(model%ground(:, s) .eqv. model%ground(:, s - 1))) cycle
+         if (all(ground_of(model, s) .eqv. ground_of(model, s - 1))) cycle
          associate (held => given_in(model, s))
             if (any(held(AT_U_Z, :) .and. nodes_of_ground(model, s))) cycle
          end associate

@@ -3,13 +3,15 @@
 !> of Newton's method, and warns on standard error, also where the run is quiet. A warning is given once a run, or once
 !> a stage or contact where its name says so.
 module alarms
+   use acting_places, only: ground_of
    use contact_alarm, only: warn_of_overlaps, warn_of_penetration
    use faults, only: fault_t
    use kinds, only: wp
-   use porous_domain, only: is_present, strain_of
+   use model_types, only: now_in
+   use porous_domain, only: strain_of
    use pressure_alarm, only: lines_t, warn_of_pressures
    use run_observer, only: observer_t, STAGE_BEGINS, STEP
-   use run_state, only: run_t, now_in
+   use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning, is_told
@@ -65,18 +67,20 @@ contains
    subroutine warn_of_strain(run)
       type(run_t), intent(in) :: run
       real(wp) :: strain, largest, at(2)
-      integer :: e, g, first
+      integer :: e, g, s, first
+      logical :: stays(size(run%domain%region_of))
 
       if (is_told('strain')) return
       largest = LARGE
       associate (domain => run%domain, new => run%next, model => run%model)
          first = 1 + findloc(model%stages(:run%at%stage - 1)%zero_displacements, .true., 1, back=.true.)
+         ! Ground that has joined since then has strains that its displacements do not tell.
+         stays = .true.
+         do s = first, run%at%stage
+            stays = stays .and. ground_of(model, s)
+         end do
          do e = 1, size(domain%region_of)
-            if (.not. is_present(new, e)) cycle
-            ! ground that has joined since then has strains that its displacements do not tell
-            if (allocated(model%ground)) then
-               if (.not. all(model%ground(e, first:run%at%stage))) cycle
-            end if
+            if (.not. stays(e)) cycle
             do g = 1, domain%rule
                strain = principal(strain_of(domain%gauss(g, e), new%x(:DISPLACEMENTS, domain%mesh%t6(:, e))))
                if (strain <= largest) cycle

@@ -7,8 +7,9 @@ module cycles_alarm
    use faults, only: fault_t
    use kinds, only: wp
    use material_point, only: CYCLES_UNTRUSTED, MANY_REVERSALS
+   use model_types, only: now_in
    use run_observer, only: observer_t, BEGINS, STAGE_BEGINS, STEP
-   use run_state, only: run_t, now_in
+   use run_state, only: run_t
    use scene_parts, only: amplitude_at
    use texts, only: short, whole
    use turns, only: follow

@@ -7,9 +7,10 @@ module localisation
    use archive, only: archive_t
    use faults, only: fault_t
    use kinds, only: wp, PI
+   use model_types, only: now_in
    use porous_domain, only: means_t, means_over, is_present, strain_of
    use run_observer, only: observer_t, BEGINS, STEP, STAGE_ENDS
-   use run_state, only: run_t, now_in
+   use run_state, only: run_t
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning

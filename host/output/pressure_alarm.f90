@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings of a run whose pore water pressures alternate from node to node (docs/theory/host.md section 3.1), in which
-!> a node of a seepage face lets water in (section 7.7), the pore water is under a tension that no soil holds (section
-!> 9.2), or in which a material made for compression has lost its mean effective stress and has no guard that would have
-!> kept it.
+!> the pore water is under a tension that no soil holds (section 9.2), or in which a material made for compression has
+!> lost its mean effective stress and has no guard that would have kept it.
 module pressure_alarm
    use warnings, only: print_warning, is_told
    use kinds, only: wp
    use material_point, only: lost_pressure, PRESSURE_LOST
+   use model_types, only: now_in
    use porous_domain, only: is_present, COUPLED
-   use run_state, only: run_t, now_in
+   use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: AT_P_W
    implicit none (type, external)
@@ -23,7 +23,7 @@ module pressure_alarm
    real(wp), parameter :: OVEN_DRY = 1.0e6_wp       !< [kPa] Suction of soil from the oven: none holds water beyond it.
 
    character(*), parameter :: OSCILLATION = 'oscillation of pressures', NO_PRESSURE = 'lost mean stress', &
-                              INFLOW = 'inflow at a limit', DRY_GROUND = 'dry ground'
+                              DRY_GROUND = 'dry ground'
 
    !> Lines of five nodes of a mesh: two sides that go on from each other at a corner.
    type :: lines_t
@@ -38,7 +38,6 @@ contains
 
       if (.not. is_told(OSCILLATION)) call warn_of_oscillation(run, lines)
       if (.not. is_told(NO_PRESSURE)) call warn_lost_pressure(run)
-      call warn_of_inflow(run)
       if (.not. is_told(DRY_GROUND)) call warn_of_dry_ground(run)
    end subroutine warn_of_pressures
 
@@ -90,18 +89,6 @@ contains
          end associate
       end do
    end subroutine warn_lost_pressure
-
-   !> Warns of a node of a seepage face that lets water in. docs/theory/host.md section 7.7.
-   subroutine warn_of_inflow(run)
-      type(run_t), intent(in) :: run
-
-      if (run%constraint%stuck == 0) return
-      associate (x => run%domain%mesh%x(:, run%dofs%node(run%constraint%stuck)))
-         call print_warning(now_in(run)//'the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage face, '// &
-            'or under rain, left its limit three times within the step, and keeps it although water enters there. '// &
-            'Shorten the steps or refine the mesh there.', once=INFLOW)
-      end associate
-   end subroutine warn_of_inflow
 
    !> Warns of pore water under more tension than any soil holds: more is drawn than the ground has, or lets through,
    !> and water that expands makes up for it. docs/theory/host.md section 9.2.

@@ -8,7 +8,7 @@ module reaction_rows
    use csv, only: quoted
    use model_types, only: model_t, factor_at
    use run_state, only: run_t
-   use scene_parts, only: LOAD_WATER, LOAD_RAIN, LOAD_AIR
+   use scene_parts, only: LOAD_WATER, LOAD_AIR
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -81,8 +81,7 @@ contains
             select case (load%kind)
             case (LOAD_WATER)
                call add(load%group, IN_W)
-            case (LOAD_RAIN)
-               call add(load%group, IN_W)
+               if (.not. load%limits) cycle
                call add(load%group, OUT_W)
                if (model%domain%with_c) call add(load%group, OUT_A)
                call add(load%group, LIMIT)
@@ -148,7 +147,7 @@ contains
                group = 0
                if (k > 0) group = run%model%fixes(k)%group
                associate (at => dofs%of(AT_P_W, i))
-                  if (constraint%limited(at)) then
+                  if (constraint%limited_by(at) > 0) then
                      group = constraint%limited_by(at)
                      if (constraint%fixed(at)) sums(LIMIT, group(1)) = sums(LIMIT, group(1)) + 1
                      ! What a free node's balance leaves is Newton's, and no flow.
@@ -175,7 +174,7 @@ contains
                factor = factor + run%scheme%l_f*(factor_at(run%model, load%amplitude, run%state%time) - factor)
                associate (sum_of => sums(:, load%group))
                   select case (load%kind)
-                  case (LOAD_WATER, LOAD_RAIN)
+                  case (LOAD_WATER)
                      sum_of(IN_W) = sum_of(IN_W) + factor*sum(vector, mask=field == AT_P_W)
                   case (LOAD_AIR)
                      sum_of(IN_A) = sum_of(IN_A) + factor*sum(vector, mask=field == AT_P_C)

@@ -131,7 +131,7 @@ contains
    end subroutine book_storage
 
    !> Adds what has come through loads and dashpots, what has left through prescribed pressures, and the
-   !> magnitude of all that. Rain counts as water that did not leave.
+   !> magnitude of all that. What is offered to a limit counts as water that did not leave.
    pure subroutine book_boundaries(run, water)
       type(run_t), intent(in) :: run
       type(water_t), intent(inout) :: water
@@ -166,7 +166,7 @@ contains
          integer, intent(in) :: i
 
          associate (c => run%constraint)
-            inflow_at = 0.5_wp*(c%load_0(i) + c%load_1(i) - c%rain_0(i) - c%rain_1(i)) - c%offset(i)
+            inflow_at = 0.5_wp*(c%load_0(i) + c%load_1(i) - c%offered_0(i) - c%offered_1(i)) - c%offset(i)
          end associate
       end function inflow_at
    end subroutine book_boundaries

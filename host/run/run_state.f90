@@ -11,11 +11,10 @@ module run_state
    use solution, only: stage_state_t
    use sparsity_pattern, only: make_pattern
    use step_control, only: controller_t, exchange_controller
-   use texts, only: short
    use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
-   public :: run_t, exchange_run, enter_stage, now_in, reset_control
+   public :: run_t, exchange_run, enter_stage, reset_control
    public :: LIMITS, LIMIT_NAMES, BY_TIMES, BY_LARGEST, BY_SMALLEST, BY_GROWTH
 
    !> Limits that keep a step from being longer: the first three in the order of the fields.
@@ -52,8 +51,23 @@ module run_state
       real(wp) :: dissipated = 0.0_wp          !< Energy that terms dissipated in the last accepted step [kJ].
       real(wp) :: seconds_output = 0.0_wp      !< Wall time of observers and checkpoints.
       real(wp) :: kept = 0.0_wp                !< When the last checkpoint was written, on the wall clock [s].
+   contains
+      procedure :: choose
    end type run_t
 contains
+   !> Lets the terms hold or free unknowns after an iteration of Newton's method.
+   subroutine choose(self, residual, changed)
+      class(run_t), intent(inout) :: self
+      real(wp), intent(in) :: residual(:)
+      logical, intent(out) :: changed
+      integer :: i
+
+      changed = .false.
+      do i = 1, size(self%terms)
+         call self%terms(i)%term%choose(self%problem_t, residual, changed)
+      end do
+   end subroutine choose
+
    !> Takes a run to a stage, and sets which contacts act in it.
    subroutine enter_stage(run, number)
       type(run_t), intent(inout) :: run
@@ -65,14 +79,6 @@ contains
       if (allocated(run%system%contacts)) call run%system%contacts%act( &
          [(run%model%contacts(i)%in_stage(number), i=1, size(run%model%contacts))])
    end subroutine enter_stage
-
-   !> Where a run is at the end of the step under way, for a warning.
-   function now_in(run) result(text)
-      type(run_t), intent(in) :: run
-      character(:), allocatable :: text
-
-      text = 'stage '//trim(run%stage%name)//', time '//short(run%next%time)//' s: '
-   end function now_in
 
    !> Sets the control of a run to that of no step; what it has counted goes on.
    pure subroutine reset_control(run)

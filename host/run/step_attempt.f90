@@ -69,12 +69,12 @@ contains
       if (fault%code /= 0) return
       call begin_attempt(dt, run)
       if (any(run%model%fixes%acceleration)) call follow_accelerations(run%problem_t)
-      call take_step(run%solution_t)
+      call take_step(run)
       if (run%log%refused_guess .and. run%at%step == 0) then
          ! The accelerations of the start are none that so long a step can follow: it begins without them.
          a0 = run%state%a
          run%state%a = 0.0_wp
-         call take_step(run%solution_t)
+         call take_step(run)
          if (run%log%outcome /= CONVERGED) run%state%a = a0
       end if
       run%iterations = run%iterations + run%log%iterations
@@ -155,6 +155,9 @@ contains
          call run%terms(i)%term%prescribe(run%state%time + dt, run%problem_t)
       end do
       call complete_constraint(run%problem_t)
+      do i = 1, size(run%terms)
+         call run%terms(i)%term%limit(run%state%time + dt, run%problem_t)
+      end do
    end subroutine set_step
 
    subroutine first_accelerations(run, fault)

@@ -21,8 +21,8 @@ contains
       call find_mean_forces(run)
    end subroutine balance_step
 
-   !> Flow out through prescribed pressures and past limits at the end of a step, less the rain: what runs off never
-   !> entered.
+   !> Flow out through prescribed pressures and past limits at the end of a step, less what is offered to these: what
+   !> they refuse never entered.
    subroutine find_outflow(run)
       type(run_t), intent(inout) :: run
       real(wp) :: flow(OUTFLOWS)
@@ -32,7 +32,7 @@ contains
                  reaction => run%system%reaction, before => run%state%outflow)
          run%next%outflow = 0.0_wp
          if (.not. scheme%has_rates) return
-         flow = [-sum(constraint%rain_0 + scheme%l_f*(constraint%rain_1 - constraint%rain_0)), 0.0_wp]
+         flow = [-sum(constraint%offered_0 + scheme%l_f*(constraint%offered_1 - constraint%offered_0)), 0.0_wp]
          do i = 1, dofs%n
             if (dofs%field(i) == AT_P_W .and. constraint%fixed(i)) flow(1) = flow(1) - reaction(i)
             if (dofs%field(i) /= AT_P_C) cycle

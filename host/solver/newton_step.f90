@@ -16,7 +16,7 @@ module newton_step
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC
    use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
                             T_REST, T_MATERIAL, T_CONTACT
-   use prescribed_values, only: constraint_t, constrain, choose_sides, loads_of_water
+   use prescribed_values, only: constraint_t, constrain, loads_of_water
    use sparse_factors, only: analyse, factorise, solve_by_factors, SOLVED, SINGULAR, INACCURATE, NOT_FINITE
    use solution, only: solution_t
    use sparsity_pattern, only: entry_of
@@ -58,7 +58,7 @@ contains
    !> max_iterations or beyond an error of 1e10; MATERIAL_FAILED or CONTACT_FAILED where these refuse the iterate (see
    !> assembly, contacts); BODY_FREE with a singular matrix; EQUATIONS_LOST where they are not finite; SOLVER_FAILED.
    subroutine take_step(solution)
-      type(solution_t), intent(inout) :: solution
+      class(solution_t), intent(inout) :: solution
       type(iterate_t) :: at
       type(scheme_t) :: scheme
       integer :: status, outcome
@@ -270,7 +270,7 @@ contains
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
    !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.
    subroutine judge_iterate(solution, at)
-      type(solution_t), intent(inout) :: solution
+      class(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
       real(wp) :: norm
       logical :: unsettled, good
@@ -278,8 +278,7 @@ contains
       at%again = .false.
       associate (constraint => solution%constraint, assembly => solution%assembly, system => solution%system, &
                  control => solution%newton, log => solution%log)
-         call choose_sides(solution%dofs, solution%pattern, assembly%values, solution%next%x, at%rhs, assembly%scale, &
-                           control%tolerance, constraint, unsettled)
+         call solution%choose(at%rhs, unsettled)
          if (allocated(system%contacts)) unsettled = unsettled .or. system%contacts%unsettled
          call measure(solution%dofs, constraint, assembly, at%rhs, system%rounding, system%largest, log)
          norm = norm2(pack(at%rhs, .not. constraint%fixed))
@@ -291,7 +290,7 @@ contains
             at%begun = max(at%norm_0, ROUNDING*norm2(assembly%scale))
          end if
          log%reduction = norm/max(at%begun, tiny(1.0_wp))
-         ! What went to the other side of its limit, or is held back from it, has not been solved for yet.
+         ! What is newly held or let go, or a contact that holds back, has not been solved for yet.
          if (.not. unsettled) then
             good = good_enough(control, log)
             at%done = good .and. .not. at%rough

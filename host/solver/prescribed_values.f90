@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> Values that a step prescribes, and the rows of the equations that say so: docs/theory/host.md section 7.1. An unknown
-!> may have an upper limit: it is held where it stands there and free where it lies below. Which side acts is decided
-!> unknown by unknown within Newton's method, as in the primal-dual active set strategy: section 7.7.
+!> Values that a step prescribes, and the rows of the equations that say so: docs/theory/host.md section 7.1. Which
+!> unknowns are held may change within Newton's method.
 module prescribed_values
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
@@ -10,12 +9,7 @@ module prescribed_values
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: constraint_t, is_released, constrain, begin_sides, choose_sides, loads_of_water
-
-   real(wp), parameter :: AT_LIMIT = 1.0e-6_wp    !< Share of the limit, and [kPa]: so near a step leaves what it holds.
-   real(wp), parameter :: LEAST_REACTION = 0.01_wp   !< Share of Newton's tolerance, of the magnitudes in a balance:
-                                                     !< less decides nothing.
-   integer, parameter :: MOST_RELEASES = 3        !< In a step; then an unknown that alternates keeps its limit.
+   public :: constraint_t, is_released, constrain, loads_of_water
 
    !> Prescribed unknowns and loads of a step.
    type :: constraint_t
@@ -24,12 +18,10 @@ module prescribed_values
       logical, allocatable :: released(:, :)  !< (fixes, nodes) Where no &fix acts in this step; not allocated: nowhere.
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure
       real(wp), allocatable :: air_target(:)
-      ! Where an unknown has a limit the target is that, and `fixed` says whether it stands there.
-      logical, allocatable :: limited(:)      !< Unknowns with a limit.
-      integer, allocatable :: limited_by(:)   !< The group of the mesh that their reaction belongs to.
-      integer, allocatable :: releases(:)     !< Number of times that they left their limit in this step.
-      integer :: stuck = 0                    !< One that keeps its limit although it should leave, 0: none.
-      real(wp), allocatable :: rain_0(:), rain_1(:)   !< Rain in the loads below, before and after [m3/s].
+      integer, allocatable :: limited_by(:)   !< Group of the mesh whose upper limit an unknown has; 0: none. Its target
+                                              !< is the limit, and `fixed` says whether it stands there.
+      real(wp), allocatable :: offered_0(:), offered_1(:)   !< Inflows in the loads below of which limits may refuse a
+                                                            !< part, before and after [m3/s].
       real(wp), allocatable :: load_0(:), load_1(:)   !< Loads before and after.
       real(wp), allocatable :: offset(:)      !< Flow of the initial state that is subtracted, forces that hold ground.
       type(linear_forces_t), allocatable :: linear(:)   !< Dashpots and springs of terms.
@@ -86,61 +78,6 @@ contains
          values(pattern%row(row):pattern%row(row + 1) - 1) = 0.0_wp
       end subroutine clear
    end subroutine constrain
-
-   !> The sides at the start of a step follow from the pressures there, so that a step that is cut, and a restart, begin
-   !> alike.
-   pure subroutine begin_sides(dofs, x, constraint)
-      type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) at the start of the step [m, kPa]
-      type(constraint_t), intent(inout) :: constraint
-      integer :: i
-
-      constraint%releases = 0
-      do i = 1, dofs%n
-         if (.not. constraint%limited(i)) cycle
-         associate (limit => constraint%target(i))
-            constraint%fixed(i) = x(dofs%field(i), dofs%node(i)) > limit - AT_LIMIT*(1 + abs(limit))
-         end associate
-      end do
-   end subroutine begin_sides
-
-   !> The sides after an iteration. An unknown is held where r + c (x - limit) > 0, r the reaction that its limit asks
-   !> for and c the slope of its balance, and free elsewhere; what is smaller than the balance is known to leaves it as
-   !> it is. One that was released too often keeps its limit and is noted in constraint%stuck.
-   pure subroutine choose_sides(dofs, pattern, values, x, reaction, magnitudes, tolerance, constraint, changed)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      real(wp), intent(in) :: values(:)     !< (entries) The matrix.
-      real(wp), intent(in) :: x(:, :)       !< (FIELDS, nodes) [m, kPa]
-      real(wp), intent(in) :: reaction(:)   !< (unknowns) What the balance with all rows kept leaves [kN, m3/s].
-      real(wp), intent(in) :: magnitudes(:)   !< (unknowns) Magnitudes of all that is in it [kN, m3/s].
-      real(wp), intent(in) :: tolerance     !< Newton's [-].
-      type(constraint_t), intent(inout) :: constraint
-      logical, intent(out) :: changed
-      real(wp) :: side, least
-      integer :: i
-
-      changed = .false.
-      constraint%stuck = 0
-      do i = 1, dofs%n
-         if (.not. constraint%limited(i)) cycle
-         side = reaction(i) &
-                + abs(values(entry_of(pattern, i, i)))*(x(dofs%field(i), dofs%node(i)) - constraint%target(i))
-         least = LEAST_REACTION*tolerance*magnitudes(i)
-         if (constraint%fixed(i) .and. side < -least) then
-            if (constraint%releases(i) >= MOST_RELEASES) then
-               constraint%stuck = i
-               cycle
-            end if
-            constraint%fixed(i) = .false.
-            constraint%releases(i) = constraint%releases(i) + 1
-            changed = .true.
-         else if (.not. constraint%fixed(i) .and. side > least) then
-            constraint%fixed(i) = .true.
-            changed = .true.
-         end if
-      end do
-   end subroutine choose_sides
 
    !> Replaces the loads of the first balance by those of the water where the air pressure is prescribed.
    !> docs/theory/host.md sections 2.3 and 7.1.

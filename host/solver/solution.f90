@@ -41,5 +41,16 @@ module solution
       type(scheme_t) :: scheme                 !< It has the length of the step, or of the attempt.
       type(control_t) :: newton                !< Limits of Newton's method.
       type(log_t) :: log                       !< Log of Newton's method.
+   contains
+      procedure :: choose
    end type solution_t
+contains
+   !> Holds or frees unknowns after an iteration of Newton's method. Here all stay as they are.
+   subroutine choose(self, residual, changed)
+      class(solution_t), intent(inout) :: self
+      real(wp), intent(in) :: residual(:)   !< (unknowns) With minus sign and all rows kept [kN, m3/s].
+      logical, intent(out) :: changed       !< An unknown was held or freed.
+
+      changed = .false.
+   end subroutine choose
 end module solution

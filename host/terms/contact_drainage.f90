@@ -12,7 +12,7 @@ module contact_drainage
    use contact_interfaces, only: contacts_t
    use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
-   use scene_parts, only: place_of, LOAD_RAIN
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
    use unknown_fields, only: DISPLACEMENTS
@@ -60,7 +60,7 @@ contains
          self%gives_way(f, number) = share_an_edge(model, model%contacts(number)%slave, model%fixes(f)%group)
       end do
       do f = 1, size(model%loads)
-         if (model%loads(f)%kind /= LOAD_RAIN .or. fault%code /= 0) cycle
+         if (.not. model%loads(f)%limits .or. fault%code /= 0) cycle
          if (.not. any(model%loads(f)%in_stage .and. model%contacts(number)%in_stage)) cycle
          if (share_an_edge(model, model%contacts(number)%slave, model%loads(f)%group)) call raise(fault, EXIT_INPUT, &
             place_of(model%loads(f))//'rain on '''//trim(model%loads(f)%group_name)//''' would fall on nodes in '// &

@@ -1,28 +1,38 @@
 ! SPDX-License-Identifier: MIT
-!> Water that runs off: seepage faces and rain, where a water pressure has a limit. Which side of it acts is decided
-!> within Newton's method (prescribed_values). docs/theory/host.md section 7.7.
+!> Water that runs off: seepage faces and rain, where a water pressure has an upper limit. It is held where it stands at
+!> its limit and free where it lies below. Which side acts is decided unknown by unknown within Newton's method, as in
+!> the primal-dual active set strategy. docs/theory/host.md section 7.7.
 module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts, force_of
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_table, only: key_table_t
-   use model_types, only: model_t, problem_t, factor_at, factors_of, gravity_at, value_at, load_t
+   use model_types, only: model_t, problem_t, factor_at, factors_of, gravity_at, value_at, load_t, now_in
    use prescribed_values, only: is_released
-   use scene_parts, only: place_of, LOAD_RAIN
+   use scene_parts, only: place_of
    use scene_term, only: scene_term_t
+   use sparsity_pattern, only: entry_of
    use texts, only: short
    use unknown_fields, only: AT_P_W, AT_P_C
+   use warnings, only: print_warning
    implicit none (type, external)
    private
-   public :: run_off_t
+   public :: run_off_t, begin_sides
 
    character(*), parameter :: NO_SUBTRACTION = 'initial_flow = ''subtract'' of &scene takes a flow away that a '// &
       'seepage face or rain has to see; start from water at rest, or let a stage find the flow (''drain'').'
 
+   real(wp), parameter :: AT_LIMIT = 1.0e-6_wp    !< Share of the limit, and [kPa]: so near a step leaves what it holds.
+   real(wp), parameter :: LEAST_REACTION = 0.01_wp   !< Share of Newton's tolerance, of the magnitudes in a balance:
+                                                     !< less decides nothing.
+   integer, parameter :: MOST_RELEASES = 3        !< In a step; then an unknown that alternates keeps its limit.
+
    type, extends(scene_term_t) :: run_off_t
       real(wp), allocatable :: ponding(:)   !< (loads) Depth of water that stays on the surface, of rain [m].
+      integer, allocatable :: releases(:)   !< (unknowns) Number of times that they left their limit in this step.
+      integer :: stuck = 0                  !< An unknown that keeps its limit although it should leave; 0: none.
    contains
-      procedure :: build_group, build, before_step, prescribe
+      procedure :: build_group, build, before_step, limit, choose, accept
    end type run_off_t
 contains
    !> The pond of a load that is rain. Raises no fault.
@@ -39,7 +49,7 @@ contains
                     'rain: depth of water that the surface holds before the rest runs off [m]', 'kind=rain')
       if (k%lists) return
       if (.not. allocated(self%ponding)) allocate (self%ponding(size(model%loads)), source=0.0_wp)
-      if (model%loads(number)%kind == LOAD_RAIN) self%ponding(number) = ponding
+      if (model%loads(number)%limits) self%ponding(number) = ponding
    end subroutine build_group
 
    !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
@@ -50,7 +60,7 @@ contains
       type(fault_t), intent(inout) :: fault
       integer :: i
 
-      self%wanted = any(model%fixes%limits) .or. any(model%loads%kind == LOAD_RAIN)
+      self%wanted = any(model%fixes%limits) .or. any(model%loads%limits)
       do i = 1, size(model%fixes)
          associate (fix => model%fixes(i))
             if (.not. fix%limits .or. fault%code /= 0) cycle
@@ -64,7 +74,7 @@ contains
       end do
       do i = 1, size(model%loads)
          associate (load => model%loads(i))
-            if (load%kind /= LOAD_RAIN .or. fault%code /= 0) cycle
+            if (.not. load%limits .or. fault%code /= 0) cycle
             call check_rain(model, load, self%ponding(i), fault)
          end associate
       end do
@@ -91,15 +101,15 @@ contains
       end if
    end subroutine check_rain
 
-   !> The rain among the loads, at both ends of the step.
+   !> The rain among the loads at both ends of the step, of which a limit may refuse a part.
    subroutine before_step(self, dt, problem, fault)
       class(run_off_t), intent(inout) :: self
       real(wp), intent(in) :: dt
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      problem%constraint%rain_0 = rain_at(problem, problem%state%time)
-      problem%constraint%rain_1 = rain_at(problem, problem%state%time + dt)
+      problem%constraint%offered_0 = rain_at(problem, problem%state%time)
+      problem%constraint%offered_1 = rain_at(problem, problem%state%time + dt)
    end subroutine before_step
 
    !> The rain of the stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
@@ -112,63 +122,125 @@ contains
       rain = 0.0_wp
       do i = 1, size(problem%model%loads)
          associate (one => problem%model%loads(i))
-            if (one%kind == LOAD_RAIN .and. one%in_stage(problem%at%stage)) &
+            if (one%limits .and. one%in_stage(problem%at%stage)) &
                rain = rain + force_of(one, factor_at(problem%model, one%amplitude, time))
          end associate
       end do
    end function rain_at
 
-   !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest, whose group
-   !> has the run-off. What another &fix gives has no limit. The air of such a face is that outside.
-   !> docs/theory/host.md section 7.7.
-   subroutine prescribe(self, time, problem)
-      class(run_off_t), intent(in) :: self
+   !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest counts, whose
+   !> group has the run-off. What is prescribed has no limit. docs/theory/host.md section 7.7.
+   subroutine limit(self, time, problem)
+      class(run_off_t), intent(inout) :: self
       real(wp), intent(in) :: time
       type(problem_t), intent(inout) :: problem
       integer :: i, k
 
-      if (.not. problem%stage%has_rates) return
+      problem%constraint%limited_by = 0
       associate (model => problem%model, groups => problem%domain%mesh%groups, stage => problem%at%stage)
-         do i = 1, size(model%fixes)
+         do i = 1, merge(size(model%fixes), 0, problem%stage%has_rates)
             associate (fix => model%fixes(i), nodes => groups(model%fixes(i)%group)%nodes)
                if (.not. fix%limits .or. .not. acts(fix, problem, time)) cycle
                do k = 1, size(nodes)
-                  ! The water outside, where it stands, else the air.
-                  if (.not. is_released(problem%constraint, i, nodes(k))) call limit(nodes(k), max(0.0_wp, &
-                     value_at(fix, model%domain%mesh%x(2, nodes(k)))*factor_at(model, fix%amplitude, time)), fix%group)
+                  if (is_released(problem%constraint, i, nodes(k))) cycle
+                  ! The water outside presses where it stands; above it there is air.
+                  call limit_node(problem, nodes(k), fix%group, max(0.0_wp, &
+                     value_at(fix, model%domain%mesh%x(2, nodes(k)))*factor_at(model, fix%amplitude, time)))
                end do
             end associate
          end do
-         do i = 1, size(model%loads)
+         do i = 1, merge(size(model%loads), 0, problem%stage%has_rates)
             associate (load => model%loads(i), nodes => groups(model%loads(i)%group)%nodes)
-               if (load%kind /= LOAD_RAIN .or. .not. load%in_stage(stage)) cycle
+               if (.not. load%limits .or. .not. load%in_stage(stage)) cycle
                do k = 1, size(nodes)
-                  call limit(nodes(k), model%domain%fluids%rho_w*gravity_at(model, time)*self%ponding(i), load%group)
+                  call limit_node(problem, nodes(k), load%group, &
+                                  model%domain%fluids%rho_w*gravity_at(model, time)*self%ponding(i))
                end do
             end associate
          end do
       end associate
-   contains
-      subroutine limit(node, value, group)
-         integer, intent(in) :: node, group
-         real(wp), intent(in) :: value   !< [kPa]
+      call begin_sides(self, problem)
+   end subroutine limit
 
-         associate (dofs => problem%dofs, c => problem%constraint)
-            associate (at => dofs%of(AT_P_W, node))
-               if (at == 0) return
-               if (c%fixed(at)) return
-               if (c%limited(at) .and. c%target(at) <= value) return
-               c%limited(at) = .true.
-               c%target(at) = value
-               c%limited_by(at) = group
-            end associate
-            associate (at => dofs%of(AT_P_C, node))
-               if (at == 0 .or. c%air(node)) return
-               if (c%fixed(at)) return
-            end associate
-            c%air(node) = .true.
-            c%air_target(node) = 0.0_wp
-         end associate
-      end subroutine limit
-   end subroutine prescribe
+   !> Limits the water pressure of a node, where it has one that is not prescribed; the air there is that outside.
+   pure subroutine limit_node(problem, node, group, value)
+      type(problem_t), intent(inout) :: problem
+      integer, intent(in) :: node, group
+      real(wp), intent(in) :: value   !< [kPa]
+
+      associate (c => problem%constraint, w => problem%dofs%of(AT_P_W, node), p_c => problem%dofs%of(AT_P_C, node))
+         if (w == 0) return
+         if (c%fixed(w) .or. (c%limited_by(w) > 0 .and. c%target(w) <= value)) return
+         c%target(w) = value
+         c%limited_by(w) = group
+         if (p_c == 0 .or. c%air(node)) return
+         if (c%fixed(p_c)) return
+         c%air(node) = .true.
+         c%air_target(node) = 0.0_wp
+      end associate
+   end subroutine limit_node
+
+   !> The sides at the start of a step follow from the pressures there, so that a step that is cut, and a restart, begin
+   !> alike.
+   pure subroutine begin_sides(self, problem)
+      class(run_off_t), intent(inout) :: self
+      type(problem_t), intent(inout) :: problem
+      integer :: i
+
+      self%releases = [(0, i=1, problem%dofs%n)]
+      associate (dofs => problem%dofs, c => problem%constraint)
+         do i = 1, dofs%n
+            if (c%limited_by(i) > 0) c%fixed(i) = problem%state%x(dofs%field(i), dofs%node(i)) > &
+                                                  c%target(i) - AT_LIMIT*(1 + abs(c%target(i)))
+         end do
+      end associate
+   end subroutine begin_sides
+
+   !> The sides after an iteration. An unknown is held where r + c (x - limit) > 0, r the reaction that its limit asks
+   !> for and c the slope of its balance, and free elsewhere; what is smaller than the balance is known to leaves it as
+   !> it is. One that was released too often keeps its limit and is noted.
+   subroutine choose(self, problem, residual, changed)
+      class(run_off_t), intent(inout) :: self
+      type(problem_t), intent(inout) :: problem
+      real(wp), intent(in) :: residual(:)
+      logical, intent(inout) :: changed
+      real(wp) :: side, least
+      integer :: i
+
+      self%stuck = 0
+      associate (c => problem%constraint, pattern => problem%pattern, values => problem%assembly%values)
+         do i = 1, problem%dofs%n
+            if (c%limited_by(i) == 0) cycle
+            side = residual(i) + abs(values(entry_of(pattern, i, i))) &
+                                 *(problem%next%x(problem%dofs%field(i), problem%dofs%node(i)) - c%target(i))
+            least = LEAST_REACTION*problem%newton%tolerance*problem%assembly%scale(i)
+            if (c%fixed(i) .and. side < -least) then
+               if (self%releases(i) >= MOST_RELEASES) then
+                  self%stuck = i
+                  cycle
+               end if
+               c%fixed(i) = .false.
+               self%releases(i) = self%releases(i) + 1
+               changed = .true.
+            else if (.not. c%fixed(i) .and. side > least) then
+               c%fixed(i) = .true.
+               changed = .true.
+            end if
+         end do
+      end associate
+   end subroutine choose
+
+   !> Warns of a node that lets water in, once a run. docs/theory/host.md section 7.7.
+   subroutine accept(self, problem, dissipated)
+      class(run_off_t), intent(inout) :: self
+      type(problem_t), intent(inout) :: problem
+      real(wp), intent(inout) :: dissipated
+
+      if (self%stuck == 0) return
+      associate (x => problem%domain%mesh%x(:, problem%dofs%node(self%stuck)))
+         call print_warning(now_in(problem)//'the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage '// &
+            'face, or under rain, left its limit three times within the step, and keeps it although water enters '// &
+            'there. Shorten the steps or refine the mesh there.', once='inflow at a limit')
+      end associate
+   end subroutine accept
 end module run_off

@@ -25,7 +25,7 @@ module staging
       real(wp), allocatable :: held_up(:)   !< (unknowns) Forces at the start of what leaves with this stage [kN].
       logical, allocatable :: absent(:)     !< (unknowns) No present element has them.
    contains
-      procedure :: build_group, build, begin_stage, before_step, prescribe
+      procedure :: build_group, build, begin_run, begin_stage, before_step, prescribe
    end type staging_t
 contains
    !> Which elements of a region the stages have. Raises no fault.
@@ -91,6 +91,16 @@ contains
          end associate
       end do
    end subroutine check_start
+
+   !> The elements of the first stage, of which none joins.
+   subroutine begin_run(self, problem, fault)
+      class(staging_t), intent(inout) :: self
+      type(problem_t), intent(inout) :: problem
+      type(fault_t), intent(inout) :: fault
+
+      problem%state%present = problem%model%ground(:, 1)
+      problem%state%joins = spread(.false., 1, size(problem%state%present))
+   end subroutine begin_run
 
    !> The elements of a stage, which join with it and which leave, and the forces that those held up; where a run is
    !> taken up within the stage, from the unknowns at its start. docs/theory/host.md section 14. Fault EXIT_MATERIAL:
@@ -193,7 +203,6 @@ contains
          do i = 1, dofs%n
             if (.not. self%absent(i)) cycle
             c%fixed(i) = .true.
-            c%limited(i) = .false.
             c%target(i) = problem%state%x(dofs%field(i), dofs%node(i))
             if (dofs%field(i) > DISPLACEMENTS) c%air(dofs%node(i)) = .false.
          end do

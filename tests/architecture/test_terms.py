@@ -16,12 +16,12 @@ WORDS = {
     "drained_regions": (r"drained_regions|give_pressures|follow_undrained", None),
     "friction": (r"friction", "contact"),
     "plane_plates": (r"plane_(plates|motion)|in_plane|\b(rotation|moment|lever)\b|turn_(node|group)", None),
-    "run_off": (r"run_off\b|limit_pressures|ponding|rain_at|check_rain", None),
-    "staging": (r"staging|held_up|staged|mark_absent", None),
+    "run_off": (r"run_off\b|(\b|_)rain(\b|_)|ponding|stuck|releases|begin_sides", None),
+    "staging": (r"staging|held_up|staged|mark_absent|%(joins|growth)\b|model%ground\b", None),
     "strength": (r"strength", None),
     "viscosity": (r"viscos", None),
 }
-STEP = ("run/step_attempt", "run/time_stepping", "solver/newton_step")   # They know term_t alone.
+STEP = ("run/", "solver/")   # They know term_t alone.
 
 
 def code(text):
@@ -30,14 +30,14 @@ def code(text):
 
 
 def crowded(files, words=None, most=MOST):
-    """Terms that too many files name, or a step. files: {place below host: text}."""
+    """Terms that too many files name, or one of a step. files: {place below host: text}."""
     found = []
     for term, (pattern, laws) in (words or WORDS).items():
         outside = sorted(place for place, text in files.items() if re.search(pattern, code(text), re.IGNORECASE)
                          and place != f"terms/{term}" and place.partition("/")[0] != laws)
         if len(outside) > most:
             found.append(f"{term}: {len(outside)} files name it: {', '.join(outside)}")
-        found += [f"{place} names {term}" for place in outside if place in STEP]
+        found += [f"{place} names {term}" for place in outside if place.startswith(STEP)]
     return found
 
 

@@ -367,14 +367,14 @@ REGIONS = [
 ]
 
 # What the field does to a boundary: (title, (file below host, text that stands there once, its replacement), ...).
-LIMITS, BALANCE, STAGED = "solver/prescribed_values.f90", "element/porous_balance.f90", "terms/staging.f90"
+LIMITS, BALANCE, STAGED = "terms/run_off.f90", "element/porous_balance.f90", "terms/staging.f90"
 STRENGTHS, STEP, FRICTION = "terms/strength.f90", "run/step_attempt.f90", "contact/contact_friction.f90"
 
 FIELD = [
-    ("a face draws in water", (LIMITS, "if (constraint%fixed(i) .and. side < -least) then", "if (constraint%fixed(i) .and. side < -huge(least)) then")),
-    ("a face lets no water out", (LIMITS, "else if (.not. constraint%fixed(i) .and. side > least) then",
-                                  "else if (.not. constraint%fixed(i) .and. side > huge(least)) then")),
-    ("a side is chosen by the flow alone", (LIMITS, "+ abs(values(entry_of(pattern, i, i)))*(x", "+ 0*abs(values(entry_of(pattern, i, i)))*(x")),
+    ("a face draws in water", (LIMITS, "if (c%fixed(i) .and. side < -least) then", "if (c%fixed(i) .and. side < -huge(least)) then")),
+    ("a face lets no water out", (LIMITS, "else if (.not. c%fixed(i) .and. side > least) then",
+                                  "else if (.not. c%fixed(i) .and. side > huge(least)) then")),
+    ("a side is chosen by the flow alone", (LIMITS, "+ abs(values(entry_of(pattern, i, i)))", "+ 0*abs(values(entry_of(pattern, i, i)))")),
     ("friction slides without a limit", (FRICTION, "if (.not. abs(t%value) > limit) return", "if (.not. abs(t%value) > huge(limit)) return")),
     ("friction of a node that was open from the start of the step", (FRICTION, "t%value = stiffness*share*slip", "t%value = stiffness*slip")),
     ("sliding forgets that the pressure changes", (FRICTION, "t%by_gap = -sign(options%friction*options%penalty, t%value)", "t%by_gap = 0.0_wp")),
