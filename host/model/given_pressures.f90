@@ -38,24 +38,44 @@ contains
       call move_alloc(x, domain%mesh%x)
    end subroutine add_centers
 
-   !> p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. docs/theory/host.md
-   !> section 8.
-   function pressures_at_start(model) result(p)
+   !> p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. Nodes of the ground
+   !> that is asked for have them from the &initial of that ground: an &initial of other ground that has them too, dry
+   !> or not there yet, means its own pores. docs/theory/host.md section 8.
+   function pressures_at_start(model, ground) result(p)
       type(model_t), intent(in) :: model
+      logical, intent(in) :: ground(:)                 !< (elements)
       real(wp) :: p(2, size(model%domain%mesh%x, 2))   !< (2, nodes)
+      logical :: meant(size(p, 2)), chosen(size(ground))
       integer :: i, n
 
       p = 0.0_wp
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
+            chosen = .false.
+            chosen(group%elements) = ground(group%elements)
+            meant = nodes_of(model%domain, chosen) .or. .not. nodes_of(model%domain, ground)
             do n = 1, size(group%nodes)
                if (any(model%domain%bodies == group%nodes(n))) cycle
+               if (size(group%elements) > 0 .and. .not. meant(group%nodes(n))) cycle
                if (model%domain%with_w) p(1, group%nodes(n)) = water(one, model%domain%mesh%x(2, group%nodes(n)))
                if (model%domain%with_c) p(2, group%nodes(n)) = suction(one, model%domain%mesh%x(2, group%nodes(n)))
             end do
          end associate
       end do
    end function pressures_at_start
+
+   !> Nodes of some elements.
+   pure function nodes_of(domain, elements) result(there)
+      type(domain_t), intent(in) :: domain
+      logical, intent(in) :: elements(:)
+      logical :: there(size(domain%mesh%x, 2))
+      integer :: e
+
+      there = .false.
+      do e = 1, size(elements)
+         if (elements(e)) there(domain%mesh%t6(:, e)) = .true.
+      end do
+   end function nodes_of
 
    !> Pore water pressure at the start at a height [kPa]: linear in z, above a water table with a limit;
    !> docs/theory/host.md section 8.
@@ -95,12 +115,8 @@ contains
    pure function nodes_with_flow(domain) result(flows)
       type(domain_t), intent(in) :: domain
       logical :: flows(size(domain%mesh%x, 2))
-      integer :: e
 
-      flows = .false.
-      do e = 1, size(domain%region_of)
-         if (domain%regions(domain%region_of(e))%drainage == COUPLED) flows(domain%mesh%t6(:, e)) = .true.
-      end do
+      flows = nodes_of(domain, domain%regions(domain%region_of)%drainage == COUPLED)
    end function nodes_with_flow
 
    !> Edges of a group through which fluids can flow in.

@@ -7,7 +7,7 @@ module initial_conditions
    use kinds, only: wp
    use model_types, only: model_t, gravity_at, initial_t
    use given_pressures, only: pressures_at_start, water, suction
-   use porous_domain, only: model_state_t, new_state_of, pressures_at, COUPLED, DRY
+   use porous_domain, only: model_state_t, new_state_of, pressures_at, COUPLED, DRAINED, DRY
    use material_point, only: material_t, range_t
    use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
@@ -47,8 +47,8 @@ contains
       allocate (tension%uses(size(model%domain%regions)))
       state = new_state_of(model%domain)
       state%gravity = gravity_at(model, state%time)
-      call set_nodes(model, state)
       ground = ground_at_start(model)
+      call set_nodes(model, ground%present, state)
       do e = 1, size(model%domain%mesh%t6, 2)
          associate (region => model%domain%regions(model%domain%region_of(e)), one => ground%initials(ground%of(e)))
             do g = 1, model%domain%rule
@@ -90,8 +90,9 @@ contains
    end subroutine initial_state
 
    !> Velocities and pressures of the nodes.
-   subroutine set_nodes(model, state)
+   subroutine set_nodes(model, present, state)
       type(model_t), intent(in) :: model
+      logical, intent(in) :: present(:)   !< (elements) In the first stage.
       type(model_state_t), intent(inout) :: state
       integer :: i
 
@@ -101,8 +102,9 @@ contains
                state%v(AT_U_Z, nodes) = one%v_z + one%wave*sin(one%wave_number*(mesh%x(2, nodes) - one%datum))
             end associate
          end do
-         state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model)
-         call clear_dry_nodes(model, state%x)
+         state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model, present .and. &
+            model%domain%regions(model%domain%region_of)%drainage == COUPLED)
+         call set_given_nodes(model, present, state%x)
          ! Pressures live on the vertices alone where they are linear.
          if (model%domain%n_p == 3) state%x(AT_P_W:AT_P_C, [mesh%t6(4:6, :)]) = 0.0_wp
       end associate
@@ -134,9 +136,11 @@ contains
       tension%z = z
    end subroutine note_tension
 
-   !> Where no region has fluids there are no pressures; undrained elements begin with the means of theirs.
-   pure subroutine clear_dry_nodes(model, x)
+   !> Where no region has fluids there are no pressures; drained ground that is there has its own, and undrained
+   !> elements begin with the means of theirs.
+   pure subroutine set_given_nodes(model, present, x)
       type(model_t), intent(in) :: model
+      logical, intent(in) :: present(:)    !< (elements) In the first stage.
       real(wp), intent(inout) :: x(:, :)   !< (FIELDS, nodes)
       logical :: wet(size(x, 2))
       integer :: e
@@ -145,7 +149,10 @@ contains
          if (all(domain%regions%drainage == COUPLED)) return
          wet = .false.
          do e = 1, size(domain%region_of)
-            if (domain%regions(domain%region_of(e))%drainage /= DRY) wet(domain%mesh%t6(:, e)) = .true.
+            associate (drainage => domain%regions(domain%region_of(e))%drainage, nodes => domain%mesh%t6(:, e))
+               if (drainage /= DRY) wet(nodes) = .true.
+               if (drainage == DRAINED .and. present(e)) x(AT_P_W:AT_P_C, nodes) = domain%given(:, nodes)
+            end associate
             if (domain%center(e) == 0) cycle
             wet(domain%center(e)) = .true.
             x(AT_P_W:AT_P_C, domain%center(e)) = domain%given(:, domain%center(e))
@@ -154,7 +161,7 @@ contains
             if (.not. wet(e)) x(AT_P_W:AT_P_C, e) = 0.0_wp
          end do
       end associate
-   end subroutine clear_dry_nodes
+   end subroutine set_given_nodes
 
    !> Which &initial every element has, of several the last one, and the ground that weighs.
    function ground_at_start(model) result(ground)

@@ -36,7 +36,9 @@ contains
       integer :: e
 
       associate (domain => model%domain)
-         p = pressures_at_start(model)
+         associate (drainage => domain%regions(domain%region_of)%drainage)
+            p = pressures_at_start(model, drainage == DRAINED .or. drainage == UNDRAINED)
+         end associate
          call set_middles(domain, p)
          do e = 1, size(domain%region_of)
             ! The mean of a quadratic field over a triangle is that of the middles of its sides.

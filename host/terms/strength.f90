@@ -136,19 +136,26 @@ contains
       if (changes) problem%assembly%slopes%known = .false.
    end subroutine before_step
 
-   !> How much of a strength is left: a body without equilibrium has no other step.
+   !> How much of a strength is left: a body without equilibrium has no other step, and a step whose tangent is not that
+   !> of the law may fail long before.
    function remark(self, model, time) result(text)
       class(strength_t), intent(in) :: self
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time
       character(:), allocatable :: text
-      integer :: i
+      integer :: i, k
 
       text = ''
       do i = 1, size(self%changes)
          associate (s => self%changes(i))
             text = text//'. By &strength '//trim(s%parameter_name)//' of '''//trim(s%material_name)//''' is at '// &
                    short(factor_at(model, s%amplitude, time))//' of its value: it may have failed'
+            do k = 1, size(s%in_region)
+               if (.not. s%in_region(k) .or. model%domain%regions(k)%law%exact_tangent) cycle
+               text = text//', or not yet: its tangent is approximate (key tangent), and no factor of safety '// &
+                      'follows from a run that ends with one'
+               exit
+            end do
          end associate
       end do
    end function remark

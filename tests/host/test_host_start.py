@@ -409,3 +409,29 @@ def test_nodes_that_share_an_unknown_are_held_by_one_of_them():
 &fix group = 'right' field = 'u_z' /
 """)
     check("it is in balance", done.returncode == 0 and told(done) == [], done.stderr)
+
+
+def test_nodes_of_two_grounds_have_the_pressure_of_the_one_whose_fluids_flow():
+    # 20 kPa in the coupled ground below, 5 kPa or none above, whichever &initial is written last: ground that is dry,
+    # keeps its fluids or is not there yet says nothing of its neighbour; drained ground that is there opens it.
+    for name, above, wanted in (("dry", "drainage = 'dry'", 20), ("closed", "drainage = 'undrained'", 20),
+                                ("later", "permeability = 'k' stages = 'fill'", 20),
+                                ("later_open", "drainage = 'drained' stages = 'fill'", 20),
+                                ("open", "drainage = 'drained'", 5)):
+        initials = ["&initial group = 'block_1_1' p_w = 20 /\n",
+                    f"&initial group = 'block_1_2' p_w = {0 if name == 'dry' else 5} /\n"]
+        for order in (initials, initials[::-1]):
+            done = start(name, f"""&scene name = 'two' geometry = 'plane_strain' fields = 'u-p_w' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1, 2 z_cells = 2, 2 /
+&elastic name = 'e' young = 1e4 poisson = 0.3 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region group = 'block_1_1' material = 'e' void_ratio = 0.5 permeability = 'k' /
+&region group = 'block_1_2' material = 'e' void_ratio = 0.5 {above} /
+{''.join(order)}&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'fill' analysis = 'static' duration = 1 dt = 1 /
+&fix group = 'all' field = 'u_r' /
+&fix group = 'all' field = 'u_z' /
+""")
+            check(f"{name} runs", done.returncode == 0, done.stderr)
+            p_w = [row["p_w"] for row in tables.numbers(work / name / "nodes_rest.csv") if row["z"] == 1]
+            check(f"{name}: the pressure between them", len(p_w) == 3 and set(p_w) == {wanted}, (order, p_w))
