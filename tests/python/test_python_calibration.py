@@ -178,6 +178,12 @@ def test_compression_makes_no_sample_looser_and_bar_is_no_kpa():
     hears("bar under a name without unit", rows, "largest sigma_a is 4", "sigma_a_kPa", kind="oedometer")
 
 
+def test_a_pore_pressure_with_the_sign_swapped_is_told():
+    rows = "0,0,400,-300,0.8\n0.05,100,400,-340,0.8\n0.1,120,400,-350,0.8\n"
+    head = "eps_a,q_kPa,sigma_3_kPa,u_kPa,e\n"
+    hears("a pore pressure below zero", head + rows, "begins at -300 kPa", kind="undrained")
+
+
 def test_one_void_ratio_in_every_row_is_that_of_the_start():
     FILE.write_text("eps_a,q_kPa,p_kPa,e\n0,0,100,0.8\n0.05,200,166,0.8\n0.1,250,183,0.8\n")
     test = read_table(FILE, "drained")[0]

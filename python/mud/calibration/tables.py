@@ -41,6 +41,7 @@ FEWEST_ROWS |= {"cyclic": 1, "stiffness": 1, "modulus": 1, "liquefaction": 1}
 LARGEST_FRACTION = {"eps_a": 0.9, "eps_v": 0.3, "gamma": 1.5}
 SMALLEST_PERCENT = 0.6  # a shear test in per cent goes further: less means fractions
 SMALLEST_VOLUME = 1e-3  # a drained test to eps_a of 0.05 or more changes its volume by more
+NO_PRESSURE = 5.0  # [kPa] by which the zero of a pore pressure may be off
 TOO_LARGE = 1.0e5  # [kPa]; a largest stress above means another unit
 # And one below: of p_0 (also at 1 g) or another, for each without and with a unit.
 SMALLEST = {False: (20.0, 2.0), True: (0.5, 0.0)}
@@ -305,6 +306,11 @@ def _test(
     pressure, since, told = pore_pressure(kind, pressures)
     if pressure is not None:
         columns["u"] = pressure
+        if pressure[0] < -NO_PRESSURE:
+            raise InputError(
+                f"{where}: the pore pressure begins at {pressure[0]:g} kPa; it is positive in compression, and what is below "
+                "zero before the test is suction, a column of its own"
+            )
     amplitude = next((head for head in heads if head.quantity == "amplitude"), None)
     if amplitude:
         _check_amplitude(where, words["cycle_by"], amplitude, columns["amplitude"])
