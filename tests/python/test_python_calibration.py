@@ -178,6 +178,24 @@ def test_compression_makes_no_sample_looser_and_bar_is_no_kpa():
     hears("bar under a name without unit", rows, "largest sigma_a is 4", "sigma_a_kPa", kind="oedometer")
 
 
+def test_a_pore_pressure_with_the_sign_swapped_is_told():
+    rows = "0,0,400,-300,0.8\n0.05,100,400,-340,0.8\n0.1,120,400,-350,0.8\n"
+    head = "eps_a,q_kPa,sigma_3_kPa,u_kPa,e\n"
+    hears("a pore pressure below zero", head + rows, "begins at -300 kPa", kind="undrained")
+
+
+def test_one_void_ratio_in_every_row_is_that_of_the_start():
+    FILE.write_text("eps_a,q_kPa,p_kPa,e\n0,0,100,0.8\n0.05,200,166,0.8\n0.1,250,183,0.8\n")
+    test = read_table(FILE, "drained")[0]
+    check("no volume is measured then", "eps_v" not in test and test.e_0 == 0.8, test.columns)
+    check("which is told", "one e in every row" in str(test.understood), test.understood)
+    FILE.write_text("sigma_a_kPa,eps_a,e\n50,0,0.9\n100,0.01,0.9\n200,0.02,0.9\n")
+    test = read_table(FILE, "oedometer")[0]
+    check("compression follows its strain", abs(test["e"][-1] - (0.9 - 1.9 * 0.02)) < 1e-12, test["e"])
+    rows = "50,0,0.9\n100,0.03,0.881\n200,0.06,0.862\n"
+    hears("a strain that contradicts e", "sigma_a_kPa,eps_a,e\n" + rows, "eps_a is 3 times", kind="oedometer")
+
+
 def test_without_e_eps_v_is_believed():
     check("without e eps_v is believed", sentence(volumes(0, -1, -2, -3)) == "", sentence(volumes(0, -1, -2, -3)))
     hears("eps_v with the sign swapped, without e", volumes(0, -0.3, 1, 2), "contracts before", "swapped")

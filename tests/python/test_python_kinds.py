@@ -45,6 +45,33 @@ def test_retention_without_a_void_ratio_tells_at_which_it_is_taken():
     check("where it moves the curve", "is taken" not in told, told)
 
 
+def test_compression_at_a_suction_is_computed_at_it():
+    # Made by the model at a suction of 50 kPa: the misfit of the truth is that of interpolation, not of saturation.
+    starts = {"oedometer": {"sigma_a": 50.0, "sigma_r": 25.0}, "isotropic": {"p_eff": 50.0}}
+    for kind, name in (("oedometer", "sigma_a"), ("isotropic", "p")):
+        stage = mud.Stage(kind, **{f"{name}_end": 1600.0}, stress="effective", increment=10.0, output_interval=100.0)
+        made = mud.element_test(sand, stage, void_ratio=0.9, suction=50.0, **starts[kind])
+        rows = zip(made["p_eff" if kind == "isotropic" else "sigma_a"], made["e"], made["sigma_r"])
+        head = f"{name}_kPa,e,sigma_r_kPa,suction_kPa\n"
+        text = "".join(f"{stress},{e},{radial},50\n" for stress, e, radial in rows)
+        answer, _ = missed(written(f"{kind}_dry.csv", head + text))
+        check(f"{kind} test at a suction", answer.e < 3e-4, answer.e)
+        wet, _ = missed(written(f"{kind}_wet.csv", head + text.replace(",50\n", ",0\n")))
+        check("which is not that of a saturated sample", wet.e > 5e-4, wet.e)
+
+
+def test_a_suction_that_a_test_is_not_computed_at_is_refused():
+    for name, text, word in (
+        ("isotropic_wetted.csv", "p_kPa,e,suction_kPa\n50,0.9,50\n100,0.89,50\n100.1,0.85,0\n", "goes from 0 to 50"),
+        ("modulus_dry.csv", "gamma,G_ratio,p_0,e_0,suction\n1e-4,0.8,100,0.8,50\n", "computed saturated"),
+    ):
+        try:
+            told = str(make_task("s", [written(name, text)]))
+        except mud.InputError as problem:
+            told = str(problem)
+        check(f"{name} is refused", word in told, told)
+
+
 def test_a_bound_that_the_tests_do_not_press_on_is_no_warning():
     # The truth has S_min = 0 and S_max = 1, where soil ends: nothing outside fits better.
     rows = "".join(f"{s},{sand.saturation(s, 0.6)},0.6\n" for s in np.geomspace(0.5, 300.0, 12))

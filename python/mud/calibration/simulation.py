@@ -260,6 +260,7 @@ def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[St
             Stage(
                 test.kind,
                 **{f"{name}_end": float(b)},
+                stress="effective",
                 increment=abs(b - a) / STRESS_INCREMENTS,
                 output_interval=abs(b - a) / STRESS_INCREMENTS,
             )
@@ -273,7 +274,7 @@ def _course(material: Material, test: LaboratoryTest, use: Use) -> tuple[list[St
             if test.kind == "oedometer"
             else {"p_eff": first}
         )
-        return stages, {**start, "void_ratio": float(test["e"][use.start])}
+        return stages, {**start, "void_ratio": float(test["e"][use.start]), "suction": test.suction}
     last = float(natural(test["eps_a"][use.rows[-1]]))
     ends = [end for end, _ in STRAIN_INCREMENTS if end < abs(last)] + [abs(last)]
     stages = [

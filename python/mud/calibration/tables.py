@@ -41,12 +41,14 @@ FEWEST_ROWS |= {"cyclic": 1, "stiffness": 1, "modulus": 1, "liquefaction": 1}
 LARGEST_FRACTION = {"eps_a": 0.9, "eps_v": 0.3, "gamma": 1.5}
 SMALLEST_PERCENT = 0.6  # a shear test in per cent goes further: less means fractions
 SMALLEST_VOLUME = 1e-3  # a drained test to eps_a of 0.05 or more changes its volume by more
+NO_PRESSURE = 5.0  # [kPa] by which the zero of a pore pressure may be off
 TOO_LARGE = 1.0e5  # [kPa]; a largest stress above means another unit
 # And one below: of p_0 (also at 1 g) or another, for each without and with a unit.
 SMALLEST = {False: (20.0, 2.0), True: (0.5, 0.0)}
 LARGEST_AMPLITUDE = 0.03  # of a strain under a name without unit: more means per cent
 # What has one value in a test, and the share by which a record of it may scatter; each row of ROWS_APART is a test of its own.
-ONE, ROWS_APART = {"e_0": 2e-3, "p_0": 0.1, "amplitude": 0.1}, ("stiffness", "modulus", "liquefaction")
+STEADY = 0.1
+ONE, ROWS_APART = {"e_0": 2e-3, "p_0": STEADY, "amplitude": STEADY}, ("stiffness", "modulus", "liquefaction")
 HELD = 0.15  # share by which p - q/3 may leave its median where the radial stress is held
 TOTAL = 0.02  # share of p at the start by which p - q/3 moves at least in an undrained test that is sheared
 # Where a shear test begins: share of its largest q up to which it has not been sheared, strains up to which it has not
@@ -304,6 +306,11 @@ def _test(
     pressure, since, told = pore_pressure(kind, pressures)
     if pressure is not None:
         columns["u"] = pressure
+        if pressure[0] < -NO_PRESSURE:
+            raise InputError(
+                f"{where}: the pore pressure begins at {pressure[0]:g} kPa; it is positive in compression, and what is below "
+                "zero before the test is suction, a column of its own"
+            )
     amplitude = next((head for head in heads if head.quantity == "amplitude"), None)
     if amplitude:
         _check_amplitude(where, words["cycle_by"], amplitude, columns["amplitude"])
@@ -321,6 +328,10 @@ def _test(
         test.unknown_e_0 = "e" not in test and "e_0" not in test
         if kind == "drained" and test.unknown_e_0 and "eps_v" not in test:
             raise InputError(f"{where}: neither a void ratio nor a volumetric strain is given")
+    measured = {"oedometer": "eps_a", "isotropic": "eps_v"}.get(kind, "") in columns  # else it may be rounded
+    if (kind == "drained" or measured) and "e" in columns and not np.ptp(columns["e"]):
+        columns.setdefault("e_0", columns.pop("e"))
+        test.understood.append((f"one e in every row of test {name}", "the void ratio at the start, e_0"))
     _void_ratio_of_compression(where, test)
     if kind in LEADS:
         _drop_noise(place, test, noise)
@@ -453,6 +464,14 @@ def _check_values(place: str, test: LaboratoryTest) -> None:
                 f"{'grows' if way > 0 else 'falls'}: one of the two has its sign swapped; compression is positive, "
                 "and q = sigma_a - sigma_r"
             )
+    if "suction" in test and test.kind != "retention":
+        suction = test["suction"]
+        if test.kind in ROWS_APART and np.any(suction > 0):
+            raise InputError(f"{where}: {suction.max():g} kPa of suction; a {test.kind} test is computed saturated")
+        if np.ptp(suction) > STEADY * np.max(suction):
+            raise InputError(
+                f"{where}: suction goes from {suction.min():g} to {suction.max():g} kPa; a test is computed at a constant one"
+            )
     if test.kind == "cyclic":
         bad = test["cycle"] != np.round(test["cycle"])
         if bad.any():
@@ -559,22 +578,23 @@ def _check_stress(where: str, test: LaboratoryTest) -> None:
 
 def _check_volume(where: str, test: LaboratoryTest) -> None:
     """Volumetric strain against e and against what sand does: it contracts before it dilates."""
-    if "eps_v" not in test or test.kind == "cyclic":
+    name = "eps_a" if test.kind == "oedometer" else "eps_v"
+    if name not in test or test.kind == "cyclic":
         return
-    change = test["eps_v"] - test["eps_v"][0]
+    change = test[name] - test[name][0]
     if "e" in test:
         told = (test["e"][0] - test["e"]) / (1 + test["e"][0])
         size = float(told @ told)
         ratio = float(change @ told) / size if size > 0 else 1.0
         if abs(ratio + 1) < SLOPE_MISFIT:
             raise InputError(
-                f"{where}: eps_v and e contradict each other: where the void ratio grows eps_v must fall. The sign of "
-                "eps_v is swapped; compression is positive"
+                f"{where}: {name} and e contradict each other: where the void ratio grows {name} must fall. The sign of "
+                f"{name} is swapped; compression is positive"
             )
         if abs(ratio - 1) > SLOPE_MISFIT:
             raise InputError(
-                f"{where}: eps_v is {ratio:.3g} times what e tells, (e_0 - e)/(1 + e_0). A hundred times: per cent, call the "
-                "column eps_v_percent; a hundredth: fractions, call it eps_v"
+                f"{where}: {name} is {ratio:.3g} times what e tells, (e_0 - e)/(1 + e_0). A hundred times: per cent, call the "
+                f"column {name}_percent; a hundredth: fractions, call it {name}"
             )
     if test.kind != "drained":
         return
