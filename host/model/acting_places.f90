@@ -11,7 +11,8 @@ module acting_places
    use triangle_mesh, only: group_of_t, triangles_beside
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, ground_of, nodes_of_ground, given_in, are_in, share_an_edge, check_actions
+   public :: facing_edges, acting_stages, ground_of, nodes_of_ground, given_in, are_in, share_an_edge, check_actions, &
+             location_of
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -154,7 +155,7 @@ contains
       if (any(there)) there(model%domain%bodies) = .true.
    end function nodes_of_ground
 
-   !> Nodes of a group. (nodes)
+   !> Marks the nodes of a group. (nodes)
    pure function are_in(model, group) result(inside)
       type(model_t), intent(in) :: model
       integer, intent(in) :: group   !< Of the mesh.
@@ -201,4 +202,23 @@ contains
          end do
       end associate
    end function given_in
+
+   !> Where a node is: the plate that it stands for, or an element and the point [m].
+   function location_of(model, node) result(text)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: node
+      character(:), allocatable :: text
+      integer :: e, i
+
+      associate (mesh => model%domain%mesh)
+         i = findloc(model%plates%node, node, dim=1)
+         if (i > 0) then
+            text = 'plate '//trim(model%plates(i)%name)
+         else
+            e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
+            text = 'node '//whole(node)//' of element '//whole(e)//', ('//short(mesh%x(1, node))//', '// &
+                   short(mesh%x(2, node))//') m'
+         end if
+      end associate
+   end function location_of
 end module acting_places

@@ -3,11 +3,11 @@
 module step_failure
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: wp
+   use acting_places, only: location_of
    use faults, only: fault_t, raise
    use texts, only: short, whole
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
-   use model_types, only: model_t
    use convergence, only: BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
    use run_state, only: run_t
@@ -182,25 +182,6 @@ contains
                 'small.'
       end associate
    end function unequal_slopes
-
-   !> Where a node is: the plate that it stands for, or an element and the point [m].
-   function location_of(model, node) result(text)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: node
-      character(:), allocatable :: text
-      integer :: e, i
-
-      associate (mesh => model%domain%mesh)
-         i = findloc(model%plates%node, node, dim=1)
-         if (i > 0) then
-            text = 'plate '//trim(model%plates(i)%name)
-         else
-            e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
-            text = 'node '//whole(node)//' of element '//whole(e)//', ('//short(mesh%x(1, node))//', '// &
-                   short(mesh%x(2, node))//') m'
-         end if
-      end associate
-   end function location_of
 
    !> The error that should have fallen below the tolerance, with its present value.
    function what_is_left(run) result(text)

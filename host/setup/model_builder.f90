@@ -60,13 +60,13 @@ contains
       if (fault%code == 0) call build_terms(scene, model, fault)
       if (fault%code == 0) call check_actions(model, fault)
       if (fault%code == 0) call check_places(model, fault)
-      if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       call build('point')
       if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call integrate_loads(model)
+      call check_bodies(model, fault)
    contains
       subroutine build(name)
          character(*), intent(in) :: name
