@@ -47,7 +47,7 @@ contains
       geometry%free = edges_of(2, :) == 0
    end subroutine contact_prepare
 
-   !> The edges of every node; at most two, of a middle node one.
+   !> Lists the edges of every node: at most two, of a middle node one.
    pure subroutine list_edges(edges, nodes, master, edges_of, status)
       integer, intent(in) :: edges(:, :), nodes
       logical, intent(in) :: master

@@ -78,7 +78,7 @@ contains
       m = [max(-s, 0.0_wp), max(s, 0.0_wp), 1.0_wp - abs(s)]
    end function hats
 
-   !> Slopes of the hat functions; a point never lies on the middle node, where segments end. By s [-].
+   !> Slopes of the hat functions by s; a point never lies on the middle node, where segments end [-].
    pure function hat_slopes(s) result(dm)
       real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: dm(3)
@@ -156,7 +156,7 @@ contains
       between = s - lower > SAME_PLACE .and. upper - s > SAME_PLACE
    end function between
 
-   !> Derivative of the foot s of master node j, from that of (x_j - x(s)).t(s) = 0. By the 12 local coordinates [1/m]:
+   !> Differentiates the foot s of master node j, where (x_j - x(s)).t(s) = 0, by the 12 local coordinates [1/m]:
    !> docs/theory/contact.md section 3.2.
    pure function end_slope(x, slave, j, s) result(d_s)
       real(wp), intent(in) :: x(2, 6), s   !< Local coordinates [m], place in [-1, 1].
@@ -267,7 +267,7 @@ contains
       end do
    end subroutine pair_points
 
-   !> Weights int M 2 pi r dGamma of a pair of edges at the three slave nodes [m2] (plane: m), weights times gaps [m3]
+   !> Sums weights int M 2 pi r dGamma of a pair of edges at the three slave nodes [m2] (plane: m), times gaps [m3]
    !> (plane: m2), and push(:, A) = int M_A (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
    !> docs/theory/contact.md section 2.3.
    pure subroutine pair_gaps(points, weight, gap, push)

@@ -12,7 +12,7 @@ module contact_plate
    private
    public :: gather_on_plate, force_on_plate, new_spring_result, evaluate_springs, lengths_of_nodes
 contains
-   !> Slope of the energy against the unknowns of the plate: minus the forces that contact exerts on it [kN].
+   !> Sums the slope of the energy by the unknowns of the plate, minus the forces that contact exerts on it [kN].
    !> docs/theory/contact.md section 4.
    pure function force_on_plate(geometry, result, slopes) result(force)
       type(contact_geometry_t), intent(in) :: geometry
@@ -100,7 +100,7 @@ contains
       end do
    end function new_spring_result
 
-   !> Forces and energy of springs at displacements. docs/theory/contact.md section 4.
+   !> Finds the forces and the energy of springs at displacements. docs/theory/contact.md section 4.
    pure subroutine evaluate_springs(stiffness, u, of_plate, result)
       real(wp), intent(in) :: stiffness(:)            !< (nodes) [kN/m]
       real(wp), intent(in) :: u(:, :), of_plate(:, :)   !< (2, nodes) of the nodes, and of their places on the plate [m]

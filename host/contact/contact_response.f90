@@ -29,7 +29,7 @@ module contact_response
       real(wp), allocatable :: value(:)         !< d force/d displacement; equal places are to be added [kN/m]
    end type nodal_forces_t
 contains
-   !> None, with room.
+   !> Makes room for forces, of which there are none yet.
    pure function new_forces(unknowns) result(forces)
       integer, intent(in) :: unknowns
       type(nodal_forces_t) :: forces

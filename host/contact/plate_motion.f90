@@ -12,7 +12,7 @@ module plate_motion
       procedure :: displacements, slopes, bending
    end type plate_motion_t
 contains
-   !> Displacements of the nodes of the face. docs/theory/contact.md section 4.
+   !> Moves the nodes of the face. docs/theory/contact.md section 4.
    pure function displacements(self, x0, q) result(u)
       class(plate_motion_t), intent(in) :: self
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
@@ -23,7 +23,7 @@ contains
       u(2, :) = q(1)
    end function displacements
 
-   !> Slopes of the coordinates 2 (node - 1) + direction of the face against the unknowns of the motion [-].
+   !> Differentiates the coordinates 2 (node - 1) + direction of the face by the unknowns of the motion [-].
    pure function slopes(self, x0, q)
       class(plate_motion_t), intent(in) :: self
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]

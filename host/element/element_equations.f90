@@ -51,7 +51,7 @@ module element_equations
       type(response_t) :: response
    end type points_t
 contains
-   !> Unknowns of an element.
+   !> Counts the unknowns of an element.
    pure integer function element_size(domain, element)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element   !< Number of the element.
@@ -225,7 +225,7 @@ contains
          if (with_c) call look_at_pressure(gp, 2, k%c0, k%c1, k%c_dot, k%grad_c)
       end subroutine look
 
-      !> A pressure before and after, its rate and its gradient at the level of values.
+      !> Evaluates a pressure before and after, its rate and its gradient at the level of values.
       subroutine look_at_pressure(gp, which, before, after, p_dot, gradient)
          type(gauss_t), intent(in) :: gp
          integer, intent(in) :: which   !< 1: p_w, 2: p_c.

@@ -122,7 +122,7 @@ contains
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    contains
-      !> Elements from .. to, those of one region together.
+      !> Computes the elements from .. to, those of one region together.
       subroutine compute_elements(from, to, block, out, seconds, rates)
          integer, intent(in) :: from, to
          type(element_block_t), intent(inout) :: block

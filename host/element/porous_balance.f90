@@ -130,7 +130,7 @@ contains
          rho_a = d_rho_a*k_a
       end subroutine fill_with_air
 
-      !> Momentum of the mixture: total stress, inertia, weight.
+      !> Adds what is in the momentum of the mixture: total stress, inertia, weight.
       subroutine add_momentum()
          real(wp) :: rho, rho_n, rho_s, accel(2), l_s, inertia
          logical :: resists_rate
@@ -251,7 +251,7 @@ contains
          end associate
       end subroutine add_air
 
-      !> Slopes of a flux against saturation and displacement.
+      !> Adds the slopes of a flux by saturation and displacement.
       subroutine add_flux_slopes(place, kappa, d_kappa, density, drive)
          integer, intent(in) :: place
          real(wp), intent(in) :: kappa, d_kappa, density, drive(2)

@@ -243,7 +243,7 @@ contains
       end do
    end subroutine place_pressures
 
-   !> p_w and p_c at a quadrature point [kPa]. docs/theory/host.md section 3.5.
+   !> Finds p_w and p_c at a quadrature point [kPa]. docs/theory/host.md section 3.5.
    pure function pressures_at(domain, element, point, carried) result(p)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element, point   !< Numbers; the point within its element.
@@ -277,7 +277,7 @@ contains
       end select
    end function given_pressures_at
 
-   !> A state of the right size, everything zero and saturated. Void ratios are those of the regions.
+   !> Makes a state of the right size, where everything is zero and saturated. Void ratios are those of the regions.
    function new_state_of(domain) result(state)
       type(domain_t), intent(in) :: domain
       type(model_state_t) :: state
@@ -312,7 +312,7 @@ contains
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
 
-   !> Strain of displacements of the nodes, or rate of velocities, at a point: rr, zz, tt and engineering shear rz.
+   !> Finds the strain of displacements of nodes, or its rate from velocities: rr, zz, tt and engineering shear rz.
    pure function strain_of(gp, u) result(strain)
       type(gauss_t), intent(in) :: gp
       real(wp), intent(in) :: u(2, 6)   !< [m] or [m/s]

@@ -118,7 +118,7 @@ contains
       end do
    end subroutine sort
 
-   !> Place of entry (i, j), 0 if the pattern has none. From 1, in pattern%col and in the values of the matrix.
+   !> Finds entry (i, j) in pattern%col and in the values of the matrix, counted from 1; 0 if the pattern has none.
    pure integer function entry_of(pattern, i, j) result(place)
       type(pattern_t), intent(in) :: pattern
       integer, intent(in) :: i, j

@@ -128,7 +128,7 @@ contains
       if (status /= 0) call wrong(g, 'the file ends early')
    end subroutine next
 
-   !> The integers of the next line.
+   !> Reads the integers of the next line.
    subroutine integers(g, values)
       type(reader_t), intent(inout) :: g
       integer, intent(out) :: values(:)
@@ -382,8 +382,8 @@ contains
       if (a(1)*b(2) - a(2)*b(1) < 0.0_wp) turned = nodes([1, 3, 2, 6, 5, 4])
    end function counter_clockwise
 
-   !> Edges of a group, each once, with their triangle on the left, of two the first one. Curves that lie on each other
-   !> have the same edges.
+   !> Lists the edges of a group once, with their triangle on the left, of two the first one. Curves that lie on each
+   !> other have the same edges.
    function oriented(mesh, edges) result(once)
       type(mesh_t), intent(in) :: mesh
       integer, intent(in) :: edges(:, :)

@@ -13,7 +13,7 @@ module split_triangles
    !> Places of the three nodes inside a triangle: middles of the sides of the innermost of the four.
    real(wp), parameter :: INNER(2, 3) = reshape([0.25_wp, 0.25_wp, 0.5_wp, 0.25_wp, 0.25_wp, 0.5_wp], [2, 3])
 contains
-   !> Four triangles for one, and two edges for one. Raises no fault.
+   !> Makes four triangles of one, and two edges of one. Raises no fault.
    subroutine split_mesh(mesh, finer)
       type(mesh_t), intent(in) :: mesh
       type(mesh_t), intent(out) :: finer

@@ -146,7 +146,7 @@ contains
       end do
    end subroutine starting_accelerations
 
-   !> Of a node at a moment of the scheme [m/s2].
+   !> Prescribes the acceleration of a node at the moment that the scheme asks for [m/s2].
    pure real(wp) function acceleration_at(model, fix, node, scheme, time) result(a)
       type(model_t), intent(in) :: model
       type(fix_t), intent(in) :: fix

@@ -89,7 +89,7 @@ contains
       end do
    end subroutine initial_state
 
-   !> Velocities and pressures of the nodes.
+   !> Sets velocities and pressures of the nodes.
    subroutine set_nodes(model, state)
       type(model_t), intent(in) :: model
       type(model_state_t), intent(inout) :: state
@@ -177,7 +177,7 @@ contains
       if (.not. ground%alike) ground%strips = new_strips(model%domain%mesh)
    end function ground_at_start
 
-   !> Effective stress, tension positive.
+   !> Sets the effective stress of a point, tension positive.
    subroutine set_stress(model, ground, element, x, s, stress)
       type(model_t), intent(in) :: model
       type(ground_t), intent(in) :: ground
@@ -240,7 +240,7 @@ contains
       end do
    end function weight_above
 
-   !> Weight of a piece of a column in the region of an element [kPa].
+   !> Weighs a piece of a column in the region of an element [kPa].
    real(wp) function weight_of_piece(model, initial, element, ends, share) result(weight)
       type(model_t), intent(in) :: model
       type(initial_t), intent(in) :: initial

@@ -135,7 +135,7 @@ contains
       ascends = all(breaks(2:) > breaks(:size(breaks) - 1))
    end function ascends
 
-   !> `fineness` times the cells, at least one of a piece, their sizes on the same curve.
+   !> Makes `fineness` times the cells, at least one of a piece, whose sizes stay on the same curve.
    pure subroutine refine(fineness, blocks)
       real(wp), intent(in) :: fineness
       type(blocks_t), intent(inout) :: blocks

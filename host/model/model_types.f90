@@ -187,7 +187,7 @@ module model_types
       class(term_t), allocatable :: term
    end type term_box_t
 contains
-   !> Unknowns of the coordinates of a plate.
+   !> Lists the unknowns of the coordinates of a plate.
    pure function unknowns_of(plate, dofs) result(unknowns)
       type(plate_t), intent(in) :: plate
       type(dofs_t), intent(in) :: dofs
@@ -206,7 +206,7 @@ contains
       if (amplitude > 0) factor = amplitude_at(model%amplitudes(amplitude), time)
    end function factor_at
 
-   !> Least and largest factor of an amplitude, as of factor_at. [-]
+   !> Finds the least and largest value that factor_at has for an amplitude. [-]
    pure function factors_of(model, amplitude) result(factors)
       type(model_t), intent(in) :: model
       integer, intent(in) :: amplitude
@@ -225,7 +225,7 @@ contains
       value = one%value + one%value_slope*(z - one%datum)
    end function value_at
 
-   !> Gravity at a time, towards -z [m/s2].
+   !> Scales gravity, which acts towards -z, by its history [m/s2].
    pure real(wp) function gravity_at(model, time)
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time   !< [s]

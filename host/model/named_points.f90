@@ -25,7 +25,7 @@ module named_points
                                                   0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp], [2, 6])
    integer, parameter :: MOST_ITERATIONS = 20      !< For the local coordinates in an element with bent sides.
 contains
-   !> Nodes, weights and nearest quadrature point of a point. Fault EXIT_GROUP: it lies outside the mesh.
+   !> Finds the nodes, weights and nearest quadrature point of a point. Fault EXIT_GROUP: it lies outside the mesh.
    subroutine find_point(m, point, fault)
       type(domain_t), intent(in) :: m
       type(point_t), intent(inout) :: point

@@ -172,7 +172,7 @@ contains
       end associate
    end subroutine build_region
 
-   !> The elements of the last region. One without a group has those that no other region names, wherever it stands;
+   !> Takes the elements of the last region. One without a group has those that no other region names, wherever it is;
    !> elements that two groups name are refused, for nothing says which region they belong to.
    subroutine take_elements(regions, elements, region_of, fault)
       type(given_region_t), intent(in) :: regions(:)

@@ -10,7 +10,7 @@ module contact_rows
    private
    public :: contact_columns, contact_row, contact_nodes
 contains
-   !> Columns of contact.csv. Their units: see contact_row.
+   !> Names the columns of contact.csv; contact_row has their units.
    function contact_columns(model) result(head)
       type(model_t), intent(in) :: model
       character(:), allocatable :: head

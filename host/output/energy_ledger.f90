@@ -54,7 +54,7 @@ module energy_ledger
 contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
-   !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
+   !> docs/theory/host.md section 9. All are in [kJ], the outflow is in [m3].
    subroutine book_step(run, ledger)
       type(run_t), intent(in) :: run   !< After a step.
       type(ledger_t), intent(inout) :: ledger
@@ -102,7 +102,7 @@ contains
    end function damping_in
 
    !> Takes the stress of the damping to the end of the step: such that the one of the equations lies between both at
-   !> the level of values, as every other force does. None in a step without inertia. docs/theory/host.md section 9.
+   !> the level of values, as every other force does. A step without inertia has none. docs/theory/host.md section 9.
    subroutine follow_damping(run, damping_stress)
       type(run_t), intent(in) :: run
       real(wp), intent(inout) :: damping_stress(:, :)
@@ -268,7 +268,7 @@ contains
       end do
    end subroutine book_seepage
 
-   !> Kinetic energy of the soil and of the bodies with a mass [kJ]. docs/theory/host.md section 9.
+   !> Sums the kinetic energy of the soil and of the bodies with a mass [kJ]. docs/theory/host.md section 9.
    real(wp) function kinetic_energy(run, state) result(energy)
       type(run_t), intent(in) :: run
       type(model_state_t), intent(in) :: state   !< State of the run before or after a step.

@@ -143,7 +143,7 @@ contains
       call close_file(file)
    end subroutine check_mesh
 
-   !> fields_NUMBER.h5 of the present state, and results.xdmf up to it. Fault EXIT_OUTPUT: they cannot be written.
+   !> Writes fields_NUMBER.h5 of the present state, and results.xdmf up to it. Fault EXIT_OUTPUT: that cannot be done.
    subroutine write_frame(self, run, fault)
       class(field_observer_t), intent(inout) :: self
       type(run_t), intent(in) :: run

@@ -85,7 +85,7 @@ contains
       flush (output_unit)
    end subroutine write_line
 
-   !> A duration in hours, minutes or seconds, as text.
+   !> Says a duration in hours, minutes or seconds.
    pure function span_of(seconds) result(text)
       real(wp), intent(in) :: seconds   !< [s]
       character(:), allocatable :: text

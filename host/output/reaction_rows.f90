@@ -102,8 +102,8 @@ contains
       end subroutine add
    end subroutine list_columns
 
-   !> Row after a step. Forces hold where the step is in balance: at the level of its values. Times [s], forces [kN],
-   !> flows [m3/s], in the order of reaction_columns: docs/theory/host.md section 9.1.
+   !> Makes the row after a step: times [s], forces [kN] and flows [m3/s] in the order of reaction_columns. Forces hold
+   !> where the step is in balance, at the level of its values: docs/theory/host.md section 9.1.
    function reaction_row(run) result(row)
       type(run_t), intent(in) :: run   !< After a step that was taken over.
       real(wp), allocatable :: row(:)

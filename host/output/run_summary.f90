@@ -155,7 +155,7 @@ contains
       end if
    end function with_unit
 
-   !> The power of ten of the first digit of a number, 0 of zero.
+   !> Finds the power of ten of the first digit of a number; that of zero is 0.
    pure integer function order(value)
       real(wp), intent(in) :: value
 
@@ -163,7 +163,7 @@ contains
       if (abs(value) > 0.0_wp) order = floor(log10(abs(value)))
    end function order
 
-   !> "1 step", "2 steps".
+   !> Counts things, as in "1 step" and "2 steps".
    pure function counted(number, noun) result(text)
       integer, intent(in) :: number
       character(*), intent(in) :: noun

@@ -105,7 +105,7 @@ contains
       run%control%memory%known = .false.
    end subroutine sudden
 
-   !> Whether a stage has come to its end. Up to rounding.
+   !> Whether a stage has come to its end, up to rounding.
    pure logical function is_over(run)
       type(run_t), intent(in) :: run
       real(wp) :: rounding
@@ -115,7 +115,7 @@ contains
       is_over = run%at%t_start + run%stage%duration - run%state%time <= rounding
    end function is_over
 
-   !> Length of the next attempt [s]. docs/theory/host.md sections 4.4 and 4.5.
+   !> Chooses the length of the next attempt [s]. docs/theory/host.md sections 4.4 and 4.5.
    real(wp) function next_step(run) result(dt)
       type(run_t), intent(in) :: run
       real(wp) :: left

@@ -81,7 +81,7 @@ contains
       slope = merge(0.5_wp*PI*slope, 0.0_wp, (arcs(low) == RISING) .eqv. (side < 0))
    end function slope_beside
 
-   !> Where the slope of a history jumps. (pairs)
+   !> Marks the pairs at which the slope of a history jumps. (pairs)
    pure function kinks_of(times, values, arcs) result(kinks)
       real(wp), intent(in) :: times(:), values(:)   !< [s], [-] (pairs)
       integer, intent(in) :: arcs(:)                !< (pairs - 1), or none: all straight.

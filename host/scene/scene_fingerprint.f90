@@ -55,7 +55,7 @@ contains
       end do
    end function hash_of
 
-   !> Continues a hash by the characters of a text.
+   !> Adds the characters of a text to a hash.
    pure subroutine add_text(text, hash)
       character(*), intent(in) :: text
       integer(int64), intent(inout) :: hash(2)
@@ -66,7 +66,7 @@ contains
       end do
    end subroutine add_text
 
-   !> Contents of a file, its path seen from the scene. One that cannot be read is refused elsewhere.
+   !> Adds the contents of a file, whose path is seen from the scene. One that cannot be read is refused elsewhere.
    subroutine add_file(scene, path, hash)
       character(*), intent(in) :: scene, path
       integer(int64), intent(inout) :: hash(2)

@@ -161,8 +161,8 @@ contains
                       error <= min(MOST_ROUGH, control%roughness*max(1.0_wp, log%forces_over_scale))
    end subroutine note_stagnation
 
-   !> Scales that the residuals of the fields are small against; rows of prescribed unknowns do not count.
-   !> docs/theory/host.md section 5.1. Of displacements [kN], of pressures [m3/s].
+   !> Finds the scales that the residuals of the fields are small against; rows of prescribed unknowns do not count.
+   !> docs/theory/host.md section 5.1. Those of displacements are in [kN], of pressures in [m3/s].
    pure function field_scales(dofs, constraint, assembly, largest) result(scales)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
@@ -284,8 +284,8 @@ contains
       norms = sqrt(norms)
    end function norms_of
 
-   !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its
-   !> worst unknown, the forces.
+   !> Measures the errors of the fields: docs/theory/host.md section 5.1. The log gets them [-], the worst field and its
+   !> worst unknown, and the forces.
    pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint

@@ -116,7 +116,7 @@ contains
       end associate
    end subroutine take_step
 
-   !> An empty log, and room for residual and correction.
+   !> Empties the log, and makes room for residual and correction.
    subroutine begin_iterate(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
@@ -194,7 +194,7 @@ contains
       end do
    end subroutine follow_newton
 
-   !> Largest tolerance of the stress integration; 0 without one. [-] docs/theory/host.md section 5.1.
+   !> Finds the largest tolerance of the stress integration, 0 without one [-]. docs/theory/host.md section 5.1.
    pure real(wp) function roughness(regions)
       type(region_t), intent(in) :: regions(:)
       integer :: i
@@ -405,9 +405,9 @@ contains
       rounding = epsilon(1.0_wp)/solution%scheme%dt*norm2(pack(pores, .not. solution%constraint%fixed))
    end function rounding_of_saturation
 
-   !> Change of the balances by a rounding of every unknown, by the entries of the matrix: the norms over the free rows
-   !> of every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces. Of
-   !> displacements [kN], of pressures [m3/s]. docs/theory/host.md section 5.1.
+   !> Estimates the change of the balances by a rounding of every unknown from the matrix: norms over the free rows of
+   !> every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces. Those
+   !> of displacements are in [kN], of pressures in [m3/s]. docs/theory/host.md section 5.1.
    pure function rounding_of_unknowns(solution) result(rounding)
       type(solution_t), intent(in) :: solution
       real(wp) :: rounding(FIELDS)
@@ -467,9 +467,9 @@ contains
       end associate
    end subroutine add_what_acts
 
-   !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
-   !> docs/theory/host.md section 4.1. Into `a` of both states, which are equal [m/s2]. Outcomes as of take_step, but
-   !> for NOT_CONVERGED.
+   !> Solves for the accelerations that the loads and stresses of a state ask for, its displacements, velocities and
+   !> pressures held: docs/theory/host.md section 4.1. They go into `a` of both states, which are equal [m/s2]. Outcomes
+   !> are those of take_step, but for NOT_CONVERGED.
    subroutine start_accelerations(solution)
       type(solution_t), intent(inout) :: solution
       type(constraint_t) :: held
@@ -537,7 +537,7 @@ contains
       end associate
    end function unbalanced_forces
 
-   !> Inertia of rigid bodies, and the forces of terms.
+   !> Adds the inertia of rigid bodies, and the forces of terms.
    subroutine add_forces(scheme, slopes, solution)
       type(scheme_t), intent(in) :: scheme
       logical, intent(in) :: slopes

@@ -195,7 +195,7 @@ contains
       end do
    end subroutine begin_run
 
-   !> Dashpots of a boundary of the ground behind it. docs/theory/host.md section 7.4.
+   !> Makes dashpots of a boundary from the ground behind it. docs/theory/host.md section 7.4.
    subroutine make_dashpots(model, side, dashpots)
       type(model_t), intent(in) :: model
       type(side_t), intent(inout) :: side
@@ -305,7 +305,7 @@ contains
       end associate
    end function pore_stiffness
 
-   !> Dashpots of an edge: integrals of N_i N_j with the impedances along its normal and tangent.
+   !> Adds the dashpots of an edge: integrals of N_i N_j with the impedances along its normal and tangent.
    subroutine add_edge(model, edge, ground, one)
       type(model_t), intent(in) :: model
       integer, intent(in) :: edge(3)

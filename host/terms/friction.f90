@@ -21,7 +21,7 @@ module friction
       procedure :: build_group, before_step, accept, exchange
    end type friction_t
 contains
-   !> The options of a contact. Raises no fault.
+   !> Sets the options of a contact. Raises no fault.
    subroutine build_group(self, k, number, model, fault)
       class(friction_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k

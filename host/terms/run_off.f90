@@ -52,8 +52,8 @@ contains
       if (model%loads(number)%limits) self%ponding(number) = ponding
    end subroutine build_group
 
-   !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
-   !> pond without weight.
+   !> Checks seepage faces and rain of a model. Fault EXIT_INPUT: keys contradict each other, rain is drawn up, or a
+   !> pond has no weight.
    subroutine build(self, model, fault)
       class(run_off_t), intent(inout) :: self
       type(model_t), intent(inout) :: model
@@ -196,9 +196,9 @@ contains
       end associate
    end subroutine begin_sides
 
-   !> The sides after an iteration. An unknown is held where r + c (x - limit) > 0, r the reaction that its limit asks
-   !> for and c the slope of its balance, and free elsewhere; what is smaller than the balance is known to leaves it as
-   !> it is. One that was released too often keeps its limit and is noted.
+   !> Chooses the sides after an iteration. An unknown is held where r + c (x - limit) > 0, with the reaction r that its
+   !> limit asks for and the slope c of its balance, and free elsewhere; what is smaller than the balance is known to
+   !> leaves it as it is. One that was released too often keeps its limit and is noted.
    subroutine choose(self, problem, residual, changed)
       class(run_off_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem

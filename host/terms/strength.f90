@@ -124,7 +124,7 @@ contains
       call change_laws(self%changes, problem%model, problem%at%t_start, problem%at%t_start, problem%next, changes)
    end subroutine begin_stage
 
-   !> The laws of a step. Slopes that were carried along know nothing of a strength that changes.
+   !> Makes the laws of a step. Slopes that were carried along know nothing of a strength that changes.
    subroutine before_step(self, dt, problem, fault)
       class(strength_t), intent(inout) :: self
       real(wp), intent(in) :: dt

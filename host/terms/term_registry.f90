@@ -84,7 +84,7 @@ contains
       end do
    end subroutine declare_keys
 
-   !> Gives a model the terms that its scene asks for. Faults: theirs.
+   !> Gives a model the terms that its scene asks for. Faults are theirs.
    subroutine build_terms(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model

@@ -37,8 +37,8 @@ contains
       is_flow = analysis%has_rates .and. .not. analysis%has_inertia
    end function is_flow
 
-   !> Coefficients of a step of an analysis. Chung & Hulbert (1993), Jansen et al. (2000):
-   !> docs/theory/host.md section 4.1, gamma_1 section 4.2.
+   !> Finds the coefficients of a step of an analysis by Chung & Hulbert (1993) and Jansen et al. (2000):
+   !> docs/theory/host.md section 4.1; section 4.2 has gamma_1.
    pure function make_scheme(analysis, rho_inf, dt, begins) result(scheme)
       class(analysis_t), intent(in) :: analysis
       real(wp), intent(in) :: rho_inf   !< 0 to 1
