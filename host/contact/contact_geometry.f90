@@ -140,7 +140,7 @@ contains
       end do
    end subroutine boxes_around
 
-   !> Box of the control polygon of every edge, which holds the curve: lower r, lower z, upper r, upper z.
+   !> Finds the box of the control polygon of every edge, which holds the curve: lower r, lower z, upper r, upper z.
    pure subroutine edge_boxes(x, edges, box)
       real(wp), intent(in) :: x(:, :)   !< (2, nodes) [m]
       integer, intent(in) :: edges(:, :)   !< (3, edges) start, end, middle.

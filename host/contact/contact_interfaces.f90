@@ -82,7 +82,7 @@ contains
       surface%x0 = x(:, surface%node)
    end function surface_of
 
-   !> Length of the shortest edge of a surface, between its ends [m].
+   !> Finds the length of the shortest edge of a surface, between its ends [m].
    pure real(wp) function shortest_edge(surface) result(length)
       type(surface_t), intent(in) :: surface
 
@@ -183,8 +183,8 @@ contains
       self%interfaces(:size(acts))%acts = acts
    end subroutine act
 
-   !> Everything at given displacements; false if a kernel refuses them. docs/theory/contact.md sections 2 to 4. A node
-   !> that slid before the last correction does not slide the other way: section 9.
+   !> Evaluates all contacts at given displacements; false if a kernel refuses them. docs/theory/contact.md sections 2
+   !> to 4. A node that slid before the last correction does not slide the other way: section 9.
    logical function evaluate(self, x, corrections, with_slopes) result(good)
       class(contacts_t), intent(inout) :: self
       real(wp), intent(in) :: x(:, :)
@@ -258,7 +258,7 @@ contains
       good = copy%probe(x)
    end subroutine probe_copy
 
-   !> One of them, with the friction that its step starts from; aside, no node has slid before. status: as of
+   !> Evaluates one contact, with the friction that its step starts from; aside, no node has slid before. status: as of
    !> contact_evaluate.
    subroutine probe_one(t, x, with_tangent, aside, status)
       type(contact_interface_t), intent(inout), target :: t

@@ -60,7 +60,7 @@ module contact_penalty
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
    end type contact_result_t
 contains
-   !> Room for evaluations of prepared surfaces.
+   !> Makes room for evaluations of prepared surfaces.
    pure function new_workspace(geometry) result(work)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_workspace_t) :: work
@@ -290,7 +290,7 @@ contains
       end do
    end subroutine add_friction
 
-   !> Work that sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is
+   !> Sums what sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is
    !> not the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
    pure real(wp) function slid_work(options, friction, result) result(total)
       type(contact_options_t), intent(in) :: options
@@ -342,7 +342,7 @@ contains
       end associate
    end subroutine press_points
 
-   !> Forces of a pair, and its stiffness where the tangent is wanted.
+   !> Adds the forces of a pair, and its stiffness where the tangent is wanted.
    pure subroutine add_response(unknown, response, with_tangent, result)
       integer, intent(in) :: unknown(12)   !< Numbers of the unknowns, as of unknowns_of.
       type(pair_response_t), intent(in) :: response

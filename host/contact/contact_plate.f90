@@ -80,7 +80,7 @@ contains
       end do
    end subroutine gather_on_plate
 
-   !> An outcome of springs with the slopes, which are constant.
+   !> Makes an outcome of springs with the slopes, which are constant.
    pure function new_spring_result(geometry, stiffness) result(result)
       type(contact_geometry_t), intent(in) :: geometry   !< Every node has its place on the plate.
       real(wp), intent(in) :: stiffness(:)   !< (nodes) [kN/m]
@@ -113,7 +113,7 @@ contains
       result%energy = 0.5_wp*dot_product(pull, reshape(u - of_plate, [size(pull)]))
    end subroutine evaluate_springs
 
-   !> Share of every node in the length of a boundary, as its shape functions give it [m]. (nodes)
+   !> Finds the share of every node in the length of a boundary, as its shape functions give it [m]. (nodes)
    pure function lengths_of_nodes(edges, x) result(lengths)
       integer, intent(in) :: edges(:, :)   !< (3, edges) start, end, middle.
       real(wp), intent(in) :: x(:, :)      !< (2, nodes) [m]

@@ -27,7 +27,7 @@ module contact_projection
    !> A step of two units in the last place of 1 is rounding, not progress.
    real(wp), parameter :: ROUNDING = 2.0_wp*epsilon(1.0_wp)
 contains
-   !> Shape functions of an edge at s in [-1, 1]: start, end, middle.
+   !> Evaluates the shape functions of an edge at s in [-1, 1]: start, end, middle.
    pure function shapes(s) result(n)
       real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: n(3)
@@ -71,9 +71,9 @@ contains
       t = edge%slope + 2.0_wp*s*edge%bend
    end function tangent
 
-   !> Length of the shortest tangent over half the chord: 1 for a straight edge with its node in the middle, 0 where it
-   !> folds back on itself or a middle node at the quarter makes an end singular. A point has -1. A curved edge may lean
-   !> as much as it likes against its chord, as soil beside a plate that has sunk into it does. [-]
+   !> Finds the length of the shortest tangent over half the chord: 1 for a straight edge with its node in the middle, 0
+   !> where it folds back on itself or a middle node at the quarter makes an end singular. A point has -1. A curved edge
+   !> may lean as much as it likes against its chord, as soil beside a plate that has sunk into it does. [-]
    pure real(wp) function least_stretch(edge)
       type(edge_t), intent(in) :: edge
       real(wp) :: slope, bend, s
@@ -116,8 +116,8 @@ contains
                          dot_product(edge%bend, t), 0.0_wp], s, where_it_is)
    end subroutine follow_normal
 
-   !> Root in [-1, 1] of a cubic that falls through it: Newton's method, and bisection where a step leaves the bracket
-   !> or does not halve it, so that it always ends.
+   !> Finds the root in [-1, 1] of a cubic that falls through it: Newton's method, and bisection where a step leaves the
+   !> bracket or does not halve it, so that it always ends.
    pure subroutine falling_root(k, s, where_it_is)
       real(wp), intent(in) :: k(0:3)   !< k0 + k1 s + k2 s**2 + k3 s**3
       real(wp), intent(out) :: s

@@ -34,7 +34,7 @@ contains
       slopes(1, 2::2) = 1.0_wp
    end function slopes
 
-   !> Tangent of forces on the face by slopes that change with the motion [kN/m].
+   !> Finds the tangent of forces on the face by slopes that change with the motion [kN/m].
    pure function bending(self, x0, q, force)
       class(plate_motion_t), intent(in) :: self
       real(wp), intent(in) :: x0(:, :)    !< (2, nodes) undisplaced [m]
@@ -45,7 +45,7 @@ contains
       bending = 0.0_wp
    end function bending
 
-   !> Nodes of the face where the plate has moved to. docs/theory/contact.md section 4.
+   !> Finds where the nodes of the face have moved to. docs/theory/contact.md section 4.
    pure function plate_positions(motion, x0, q) result(x)
       class(plate_motion_t), intent(in) :: motion
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]

@@ -97,7 +97,7 @@ contains
       end do
    end subroutine least_determinant
 
-   !> Newton's method for the angle where the slope vanishes, kept within one spacing of the angle that it starts from.
+   !> Finds where the slope vanishes by Newton's method, within one spacing of the angle that it starts from.
    pure real(wp) function lowest_near(q, start) result(t)
       type(determinant_t), intent(in) :: q
       real(wp), intent(in) :: start

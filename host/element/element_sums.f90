@@ -89,8 +89,8 @@ contains
       if (fields >= SUCTION) call add_tangent_of_pressure(gp, b, fields, PC, GA, tangent, k(:, :, :, SUCTION))
    end subroutine add_tangent
 
-   !> The rows of the pressures in the columns of the displacements: by the change of volume, and by the acceleration
-   !> where it drives seepage. What these do to the balances is the same at every node.
+   !> Adds the rows of the pressures in the columns of the displacements: by the change of volume, and by the
+   !> acceleration where it drives seepage. What these do to the balances is the same at every node.
    pure subroutine add_balances_of_displacements(gp, b, fields, tangent, k)
       type(gauss_t), intent(in) :: gp
       type(rows_t), intent(in) :: b
@@ -136,8 +136,8 @@ contains
       end do
    end subroutine add_tangent_of_pressure
 
-   !> The residual in the order of the element's unknowns: displacements node by node, then the n_p values of a pressure
-   !> after those of the other.
+   !> Puts the residual in the order of the element's unknowns: displacements node by node, then the n_p values of a
+   !> pressure after those of the other.
    pure subroutine residual_of(r, fields, n_p, ordered)
       real(wp), intent(in) :: r(NODES, 4)
       integer, intent(in) :: fields, n_p
@@ -155,7 +155,7 @@ contains
       end do
    end subroutine residual_of
 
-   !> The matrix in that order.
+   !> Puts the matrix in that order.
    pure subroutine matrix_of(k, fields, n_p, ordered)
       real(wp), intent(in) :: k(NODES, 4, NODES, 4)
       integer, intent(in) :: fields, n_p

@@ -75,7 +75,7 @@ contains
       call keep_above(law%floor, k%a, k%da)
    end function relative_permeability
 
-   !> x to a power, by multiplications where the exponent is a small whole number, as those of the defaults are.
+   !> Raises x to a power, by multiplications where the exponent is a small whole number, as those of the defaults are.
    pure real(wp) function power(x, exponent)
       real(wp), intent(in) :: x, exponent
       integer :: n

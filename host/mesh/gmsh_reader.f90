@@ -99,7 +99,7 @@ contains
       if (g%fault%code == 0) call raise(g%fault, EXIT_MESH, at_line(g%file, g%line)//what//'; '//remedy//'.')
    end subroutine wrong
 
-   !> The plane of a mesh: x, y, or, where y does not vary and z does, x, z.
+   !> Finds the plane of a mesh: x, y, or, where y does not vary and z does, x, z.
    subroutine find_plane(g, mesh)
       type(reader_t), intent(inout) :: g
       type(mesh_t), intent(inout) :: mesh
@@ -148,8 +148,8 @@ contains
       only_numbers = verify(trim(g%text), '0123456789+-.eEdD '//achar(9)//achar(13)) == 0
    end function only_numbers
 
-   !> A number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so that
-   !> a damaged number cannot ask for all memory.
+   !> Reads a number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so
+   !> that a damaged number cannot ask for all memory.
    subroutine check_announced(g, what, number)
       type(reader_t), intent(inout) :: g
       character(*), intent(in) :: what

@@ -148,7 +148,7 @@ contains
          end do
       end subroutine add_interfaces
 
-      !> A boundary and its pieces, whose numbers stand before the end of its name.
+      !> Adds a boundary and its pieces, whose numbers stand before the end of its name.
       subroutine add_side(name, ending, edges, piece)
          character(*), intent(in) :: name, ending
          integer, intent(in) :: edges(:, :), piece(:)

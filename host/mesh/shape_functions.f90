@@ -69,7 +69,7 @@ contains
          call six(0.053145049844816947353_wp, 0.31035245103378440542_wp, 0.082851075618373575194_wp)
       end select
    contains
-      !> The three points with two barycentric coordinates equal to a.
+      !> Adds the three points with two barycentric coordinates equal to a.
       subroutine add_three_points(a, weight)
          real(wp), intent(in) :: a, weight
 
@@ -92,7 +92,7 @@ contains
       end subroutine six
    end subroutine triangle_rule
 
-   !> Gauss-Legendre with three points on (-1, 1), exact to degree 5.
+   !> Gives the three points of Gauss and Legendre on (-1, 1), exact to degree 5.
    pure subroutine edge_rule(points, weights)
       real(wp), intent(out) :: points(3), weights(3)
 

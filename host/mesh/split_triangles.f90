@@ -47,7 +47,7 @@ contains
          call split_group(k)
       end do
    contains
-      !> The nodes at a quarter and at three quarters of a side, made when the side is seen first.
+      !> Finds the nodes at a quarter and at three quarters of a side, made when the side is seen first.
       subroutine find_quarters(side, nodes)
          integer, intent(in) :: side(3)
          integer, intent(out) :: nodes(2)
@@ -62,7 +62,7 @@ contains
          if (side(1) > side(2)) nodes = nodes([2, 1])
       end subroutine find_quarters
 
-      !> Place on a side a quarter of the way from its first node.
+      !> Finds the place on a side a quarter of the way from its first node.
       pure function quarter_of(first, middle, last) result(place)
          integer, intent(in) :: first, middle, last
          real(wp) :: place(2)

@@ -55,7 +55,7 @@ contains
       acting = action%in_stage .and. (model%stages%has_inertia .or. .not. action%damps)
    end function acting_stages
 
-   !> On which sides of the edges of a group a stage has ground. (edges)
+   !> Finds on which sides of the edges of a group a stage has ground. (edges)
    pure function sides_with_ground(model, group, number) result(sides)
       type(model_t), intent(in) :: model
       integer, intent(in) :: group, number   !< Of the mesh; of the stage.
@@ -140,7 +140,7 @@ contains
       end function misplaced
    end subroutine check_actions
 
-   !> Nodes of elements that a stage has, and of plates.
+   !> Marks the nodes of elements that a stage has, and of plates.
    pure function nodes_of_ground(model, number) result(there)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number   !< Of the stage.
@@ -176,8 +176,8 @@ contains
       end associate
    end function share_an_edge
 
-   !> What a &fix gives nodes in a stage, or from its start to its end: a limit gives nothing throughout. Rotations of
-   !> bodies stand at PRESCRIBED_OF_BODY. (PRESCRIBED_OF_BODY, nodes)
+   !> Marks what a &fix gives nodes in a stage, or from its start to its end: a limit gives nothing throughout.
+   !> Rotations of bodies stand at PRESCRIBED_OF_BODY. (PRESCRIBED_OF_BODY, nodes)
    pure function given_in(model, number, throughout) result(given)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number                !< Of the stage.

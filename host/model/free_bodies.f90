@@ -63,7 +63,7 @@ contains
       end associate
    end subroutine check_bodies
 
-   !> For every node the first node of its body, which stands for it; 0 where it has no displacement.
+   !> Finds for every node the first node of its body, which stands for it; 0 where it has no displacement.
    function bodies_of(model) result(body)
       type(model_t), intent(in) :: model
       integer :: body(size(model%domain%mesh%x, 2))

@@ -30,9 +30,9 @@ module initial_conditions
       type(strips_t) :: strips
    end type ground_t
 contains
-   !> State of a model at the start; a fault where a material refuses it. `tension`: points with a tensile stress.
-   !> docs/theory/host.md section 8. Stresses: tension positive, pore pressures: compression positive [kPa]. Fault
-   !> EXIT_MATERIAL.
+   !> Sets the state of a model at the start; a fault where a material refuses it. `tension`: points with a tensile
+   !> stress. docs/theory/host.md section 8. Stresses: tension positive, pore pressures: compression positive [kPa].
+   !> Fault EXIT_MATERIAL.
    subroutine initial_state(model, state, fault, tension)
       type(model_t), intent(in) :: model
       type(model_state_t), intent(out) :: state
@@ -156,7 +156,7 @@ contains
       end associate
    end subroutine clear_dry_nodes
 
-   !> Which &initial every element has, of several the last one, and the ground that weighs.
+   !> Finds which &initial every element has, of several the last one, and the ground that weighs.
    function ground_at_start(model) result(ground)
       type(model_t), intent(in) :: model
       type(ground_t) :: ground
@@ -202,7 +202,7 @@ contains
       end associate
    end subroutine set_stress
 
-   !> Weight of what lies between a point and the surface, layer by layer [kPa]; where no element does, it is as the
+   !> Weighs what lies between a point and the surface, layer by layer [kPa]; where no element does, it is as the
    !> point's own. docs/theory/host.md section 8.
    real(wp) function weight_above(model, ground, element, x) result(weight)
       type(model_t), intent(in) :: model

@@ -86,7 +86,7 @@ contains
          end if
       end associate
    contains
-      !> Number of the last picture up to a share of the stage.
+      !> Finds the number of the last picture up to a share of the stage.
       pure integer function picture_of(share)
          real(wp), intent(in) :: share   !< [-]
 
@@ -94,7 +94,7 @@ contains
       end function picture_of
    end function is_due
 
-   !> mesh.h5: nodes, elements, quadrature points, region of every element. Fault EXIT_OUTPUT: it cannot be written.
+   !> Writes mesh.h5: nodes, elements, quadrature points, regions. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_mesh(folder, model, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model

@@ -171,8 +171,8 @@ contains
       end associate
    end subroutine write_fields
 
-   !> points.csv: the place of every point of the scene, and that of its stresses, the nearest quadrature point, both at
-   !> the start [m]. Fault EXIT_OUTPUT: it cannot be written.
+   !> Writes points.csv: the place of every point of the scene, and that of its stresses, the nearest quadrature point,
+   !> both at the start [m]. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_points(folder, model, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model

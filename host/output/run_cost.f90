@@ -37,7 +37,7 @@ contains
       text = text//'.'
    end function size_of_run
 
-   !> So many numbers.
+   !> Says how much memory so many numbers take.
    function megabytes(numbers) result(text)
       real(wp), intent(in) :: numbers
       character(:), allocatable :: text

@@ -94,7 +94,7 @@ contains
       end do
    end subroutine note_peaks
 
-   !> The summary; nothing of answers that no step has changed, of steps where all are given.
+   !> Writes the summary; nothing of answers that no step has changed, of steps where all are given.
    subroutine print_summary(unit, run, peaks)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(run_t), intent(in) :: run
@@ -135,7 +135,7 @@ contains
          trim(run%model%origin%file)//'" measures them.'
    end subroutine print_summary
 
-   !> A value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
+   !> Says a value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
    !> millionths. Of three digits, or as many as resolve a part of it.
    pure function with_unit(value, unit, part) result(text)
       real(wp), intent(in) :: value   !< [m], [s] or another unit.

@@ -142,9 +142,10 @@ contains
       end associate
    end subroutine local_errors
 
-   !> Error of a static step [unit of the rate times s]: its ends are in equilibrium, and within it the material follows
-   !> a straight path instead of a bent one: the bend, dt**2/12 of its second derivative in the mean, as far as the
-   !> stiffness changes along it, which is the share by which the rate does. docs/theory/host.md section 4.5.
+   !> Estimates the error of a static step [unit of the rate times s]: its ends are in equilibrium, and within it the
+   !> material follows a straight path instead of a bent one: the bend, dt**2/12 of its second derivative in the mean,
+   !> as far as the stiffness changes along it, which is the share by which the rate does. docs/theory/host.md section
+   !> 4.5.
    pure function static_error(rate, rate_before, dt, dt_before) result(error)
       real(wp), intent(in) :: rate(:, :), rate_before(:, :)   !< (fields, nodes) of this step and of the last one.
       real(wp), intent(in) :: dt, dt_before                   !< Lengths of both steps [s].

@@ -44,8 +44,8 @@ contains
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(run, fault)
    end subroutine prepare_run
 
-   !> The flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault EXIT_MATERIAL:
-   !> a material refuses the initial state.
+   !> Keeps the flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault
+   !> EXIT_MATERIAL: a material refuses the initial state.
    subroutine keep_flow(run, fault)
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault

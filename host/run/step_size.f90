@@ -35,7 +35,7 @@ module step_size
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it: less
                                                   !< than its rounding times the condition of a matrix, 1e-16 times 1e7.
 contains
-   !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
+   !> Begins a stage: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
    subroutine begin_control(run)
       type(run_t), intent(inout) :: run
       logical :: anew
@@ -55,7 +55,7 @@ contains
       end associate
    end subroutine begin_control
 
-   !> First step: that of the scene, or a share of the span to the first break of what acts.
+   !> Chooses the first step: that of the scene, or a share of the span to the first break of what acts.
    real(wp) function first_step(run) result(dt)
       type(run_t), intent(in) :: run
       real(wp) :: span
@@ -138,7 +138,7 @@ contains
       end if
    end function next_step
 
-   !> Changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa]. docs/theory/host.md
+   !> Finds changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa]. docs/theory/host.md
    !> section 5.1.
    pure function negligible_changes(run) result(changes)
       type(run_t), intent(in) :: run
@@ -149,7 +149,7 @@ contains
                                                           *run%control%scale(DISPLACEMENTS + 1:)
    end function negligible_changes
 
-   !> The next of the times that given steps end at [s].
+   !> Finds the next of the times that given steps end at [s].
    pure real(wp) function next_end(run)
       type(run_t), intent(in) :: run
 
@@ -172,7 +172,7 @@ contains
       if (run%stage%controlled) call shift_rates(run%scheme, run%control%memory, run%state)
    end subroutine begin_attempt
 
-   !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
+   !> Decides after a solution whether its error lets it stand; the length of the next attempt follows from it.
    !> docs/theory/host.md section 4.5. Where steps are given every one stands.
    subroutine judge_step(run, accepted)
       type(run_t), intent(inout) :: run
@@ -222,8 +222,8 @@ contains
       end associate
    end subroutine estimate_error
 
-   !> Changes in the second of two equal steps since a sudden change: those of a flow that begins with the root
-   !> of time. Of such a flow the steps change by D and (sqrt(2) - 1) D, so that the rate falls in the second by sqrt(2)
+   !> Finds changes in the second of two equal steps since a sudden change: those of a flow that begins with the root of
+   !> time. Of such a flow the steps change by D and (sqrt(2) - 1) D, so that the rate falls in the second by sqrt(2)
    !> times what it adds. What goes on as in the first step, as under a load that begins to grow, is none.
    !> docs/theory/host.md section 4.5.
    pure function begun_with_root(run) result(change)
@@ -283,10 +283,9 @@ contains
       end associate
    end subroutine weigh_error
 
-   !> Largest error of a plate over the largest change of the ground, which it has to do with: in flight it errs by
-   !> nothing.
-   !> By the norm of the fields, over all nodes of the ground, a plate that falls on a foot at its side and bounces took
-   !> 1207 steps for 808 and erred by 1e-5 m for 5e-6.
+   !> Finds the largest error of a plate over the largest change of the ground, which it has to do with: in flight it
+   !> errs by nothing. By the norm of the fields, over all nodes of the ground, a plate that falls on a foot at its side
+   !> and bounces took 1207 steps for 808 and erred by 1e-5 m for 5e-6.
    pure real(wp) function share_of_plates(error, bodies, run) result(share)
       real(wp), intent(in) :: error(:, :)   !< (FIELDS, nodes) [m, kPa]
       integer, intent(in) :: bodies         !< Nodes of the ground; those of the plates come after.
@@ -308,7 +307,7 @@ contains
                                    - run%control%x_first(:DISPLACEMENTS, bodies + 1:))))
    end function way_of_plates
 
-   !> Root mean square over the nodes; displacements count as one field.
+   !> Takes the root mean square over the nodes; displacements count as one field.
    pure function field_norms(values) result(norms)
       real(wp), intent(in) :: values(:, :)   !< (FIELDS, nodes)
       real(wp) :: norms(FIELDS)
@@ -318,7 +317,7 @@ contains
       norms = sqrt(norms/max(1, size(values, 2)))
    end function field_norms
 
-   !> Largest changes of the fields, that of the step under way among them; not below a share of their values.
+   !> Finds the largest changes of the fields, that of the step under way among them; not below a share of their values.
    pure function scales(run, bodies) result(s)
       type(run_t), intent(in) :: run
       integer, intent(in) :: bodies
@@ -331,8 +330,8 @@ contains
       s(:DISPLACEMENTS) = max(s(:DISPLACEMENTS), PLATE_SHARE*way_of_plates(run, bodies))
    end function scales
 
-   !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
-   !> 4.4; nothing where steps are given.
+   !> Shortens the step after an attempt that failed: the share of it that is tried next becomes the step.
+   !> docs/theory/host.md section 4.4; nothing where steps are given.
    subroutine shorten_step(run)
       type(run_t), intent(inout) :: run
 
@@ -346,7 +345,7 @@ contains
       run%at%nominal = run%control%controller%dt
    end subroutine shorten_step
 
-   !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
+   !> Keeps, of an accepted step that is not yet taken over, rates for the next estimate, and what ends with the step.
    !> docs/theory/host.md section 4.5. Where steps are given their length does not follow.
    subroutine keep_step(run)
       type(run_t), intent(inout) :: run

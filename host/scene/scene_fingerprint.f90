@@ -17,9 +17,9 @@ module scene_fingerprint
    character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds', 'goals']
 
 contains
-   !> What tells a scene from others: the fingerprint of its groups, as 16 hexadecimal digits, and two numbers for every
-   !> group, which differ where the group does. A file that cannot be read counts by its name alone. The name of the
-   !> scene is that of a key, which is not read here.
+   !> Makes what tells a scene from others: the fingerprint of its groups, as 16 hexadecimal digits, and two numbers for
+   !> every group, which differ where the group does. A file that cannot be read counts by its name alone. The name of
+   !> the scene is that of a key, which is not read here.
    type(origin_t) function origin_of(file, groups) result(origin)
       character(*), intent(in) :: file
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)

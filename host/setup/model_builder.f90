@@ -30,8 +30,8 @@ module model_builder
    real(wp), parameter :: OF_ELASTIC = 7.0e-6_wp, OF_PLASTIC = 5.0e-5_wp
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
-   !> Group by group, each once what it names is known. Faults: those of the builders of groups and terms, and of the
-   !> checks; EXIT_GROUP: an element of no region; EXIT_ELEMENT: see prepare_domain.
+   !> Builds a model group by group, each once what it names is known. Faults: those of the builders of groups and
+   !> terms, and of the checks; EXIT_GROUP: an element of no region; EXIT_ELEMENT: see prepare_domain.
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(out) :: model
@@ -102,7 +102,7 @@ contains
       end subroutine build_regions
    end subroutine build_model
 
-   !> Which scene it is of; its lists are empty.
+   !> Notes which scene a model is of; its lists are empty.
    subroutine begin_model(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model

@@ -173,7 +173,7 @@ contains
       end do
    end subroutine look_at_initials
 
-   !> An &initial of whose nodes and elements later ones have every one: keys of two do not add up.
+   !> Warns of an &initial of whose nodes and elements later ones have every one: keys of two do not add up.
    subroutine look_at_replaced_initials(model)
       type(model_t), intent(in) :: model
       logical :: nodes(size(model%domain%mesh%x, 2)), elements(size(model%domain%region_of))
@@ -192,7 +192,7 @@ contains
       end do
    end subroutine look_at_replaced_initials
 
-   !> Two contacts of the same two boundaries in one stage, in either order.
+   !> Warns of two contacts of the same two boundaries in one stage, in either order.
    subroutine look_at_doubled_contacts(model)
       type(model_t), intent(in) :: model
       integer :: i, k

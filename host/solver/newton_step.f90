@@ -338,7 +338,7 @@ contains
       at%with_slopes = .false.
    end subroutine correct
 
-   !> Outcome of a step whose equations were not solved.
+   !> Names the outcome of a step whose equations were not solved.
    pure integer function outcome_of(status)
       integer, intent(in) :: status   !< As solve_step gives it.
 
@@ -378,8 +378,8 @@ contains
       end associate
    end subroutine begin_passes
 
-   !> Error that the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the
-   !> free balances of air [m3/s]. docs/theory/host.md section 5.1.
+   !> Estimates the error that the rounding of the degree of saturation at both ends of a step leaves of its rate, in
+   !> the norm of the free balances of air [m3/s]. docs/theory/host.md section 5.1.
    pure real(wp) function rounding_of_saturation(solution) result(rounding)
       type(solution_t), intent(in) :: solution
       real(wp) :: pores(solution%dofs%n)
@@ -428,7 +428,7 @@ contains
       rounding = ROUNDINGS*epsilon(1.0_wp)*sqrt(rounding)
    end function rounding_of_unknowns
 
-   !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in at%rhs.
+   !> Adds rigid bodies, boundaries, contacts and loads to the elements; at%rhs becomes minus the residual.
    subroutine add_what_acts(scheme, solution, at)
       type(scheme_t), intent(in) :: scheme
       type(solution_t), intent(inout) :: solution
@@ -515,8 +515,8 @@ contains
       end associate
    end subroutine start_accelerations
 
-   !> Forces on the free displacements that the loads of a state at rest leave without balance: those that act at once.
-   !> docs/theory/host.md section 4.4. False where the material or a contact refuses the state.
+   !> Finds the forces on the free displacements that the loads of a state at rest leave without balance: those that act
+   !> at once. docs/theory/host.md section 4.4. False where the material or a contact refuses the state.
    logical function unbalanced_forces(solution, forces) result(good)
       type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads, load_1 become them.
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]

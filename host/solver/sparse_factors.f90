@@ -92,7 +92,7 @@ module sparse_factors
       end subroutine umfpack_di_free_numeric
    end interface
 contains
-   !> Ordering, once per pattern and by the pattern alone: a run that is taken up again finds the same one.
+   !> Orders the equations once per pattern and by the pattern alone: a run that is taken up again finds the same one.
    !> docs/theory/host.md section 6. Earlier factors are freed. status: SOLVED or FAILED.
    subroutine analyse(sparse, row, col, status)
       type(sparse_t), intent(inout) :: sparse

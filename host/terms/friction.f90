@@ -55,7 +55,7 @@ contains
       end select
    end subroutine before_step
 
-   !> The tractions at the end of the step, and what sliding has dissipated.
+   !> Takes over the tractions at the end of the step, and what sliding has dissipated.
    subroutine accept(self, problem, dissipated)
       class(friction_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem

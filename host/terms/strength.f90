@@ -113,7 +113,7 @@ contains
       end do
    end subroutine check_law
 
-   !> The laws of a stage at its start.
+   !> Makes the laws of a stage at its start.
    subroutine begin_stage(self, begins, problem, fault)
       class(strength_t), intent(inout) :: self
       logical, intent(in) :: begins
@@ -153,7 +153,7 @@ contains
       end do
    end function remark
 
-   !> The laws of a step, which ends with the state `next`.
+   !> Makes the laws of a step, which ends with the state `next`.
    subroutine change_laws(list, model, from, until, next, changes)
       type(change_t), intent(in) :: list(:)
       type(model_t), intent(in) :: model
