@@ -141,7 +141,7 @@ contains
       option_given = options(place_of(options, name))%given
    end function option_given
 
-   !> Value of an option, blank if it is not given. The name must be one of options(:).
+   !> Finds the value of an option, blank if it is not given. The name must be one of options(:).
    pure function option_value(options, name) result(value)
       type(option_t), intent(in) :: options(:)
       character(*), intent(in) :: name
@@ -150,8 +150,8 @@ contains
       value = trim(options(place_of(options, name))%value)
    end function option_value
 
-   !> Values of an option that may be given several times, in their order; none if it is not given. The name must be one
-   !> of options(:).
+   !> Finds the values of an option that may be given several times, in their order; none if it is not given. The name
+   !> must be one of options(:).
    pure function option_values(options, name) result(values)
       type(option_t), intent(in) :: options(:)
       character(*), intent(in) :: name

@@ -21,7 +21,7 @@ module csv
       type(c_ptr) :: file = c_null_ptr
    end type csv_t
 contains
-   !> A new file; its columns are named in `head`. A fault (EXIT_OUTPUT) where it cannot be written.
+   !> Opens a new file; its columns are named in `head`. A fault (EXIT_OUTPUT) where it cannot be written.
    subroutine new_csv(path, head, table, fault)
       character(*), intent(in) :: path, head
       type(csv_t), intent(out) :: table
@@ -31,7 +31,7 @@ contains
       if (fault%code == 0) call write_line(table, head, fault)
    end subroutine new_csv
 
-   !> A new, empty file; '-' is the standard output. A fault (EXIT_OUTPUT) where it cannot be made.
+   !> Opens a new, empty file; '-' is the standard output. A fault (EXIT_OUTPUT) where it cannot be made.
    subroutine open_csv(path, columns, table, fault)
       character(*), intent(in) :: path
       integer, intent(in) :: columns   !< For which a row has room.
@@ -51,7 +51,7 @@ contains
       end if
    end subroutine open_csv
 
-   !> Number of columns that the first line of a table names; a comma in quotes ends none.
+   !> Counts the columns that the first line of a table names; a comma in quotes ends none.
    pure integer function columns_of(head)
       character(*), intent(in) :: head
       logical :: inside
@@ -65,7 +65,7 @@ contains
       end do
    end function columns_of
 
-   !> A text as a cell: in quotes where it has a comma or quotes, which are doubled.
+   !> Writes a text as a cell: in quotes where it has a comma or quotes, which are doubled.
    pure function quoted(text) result(cell)
       character(*), intent(in) :: text
       character(:), allocatable :: cell
@@ -129,7 +129,7 @@ contains
       inquire (file=path, size=bytes)
    end function size_of
 
-   !> The row that was composed in `table%row`, without the blanks at its end. As write_line.
+   !> Writes the row that was composed in `table%row`, without the blanks at its end. As write_line.
    subroutine write_row(table, fault)
       type(csv_t), intent(inout) :: table
       type(fault_t), intent(inout) :: fault

@@ -57,7 +57,7 @@ contains
       x = b(:, 1)
    end subroutine solve
 
-   !> Outer product a b^T. product(i, j) = a(i) b(j), in the product of their units.
+   !> Makes the outer product a b^T. product(i, j) = a(i) b(j), in the product of their units.
    pure function outer(a, b) result(product)
       real(wp), intent(in) :: a(:), b(:)
       real(wp) :: product(size(a), size(b))

@@ -29,7 +29,7 @@ contains
       fault%text = text
    end subroutine raise
 
-   !> "file:line: ", the place in front of a sentence.
+   !> Says "file:line: ", the place in front of a sentence.
    pure function at_line(file, line) result(place)
       character(*), intent(in) :: file
       integer, intent(in) :: line

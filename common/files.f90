@@ -43,7 +43,7 @@ module files
          type(c_ptr), value :: file
       end function fflush
 
-      !> Descriptor of an open file, -1 after a failure.
+      !> Returns the descriptor of an open file, -1 after a failure.
       integer(c_int) function fileno(file) bind(c)
          import :: c_ptr, c_int
          type(c_ptr), value :: file
@@ -107,7 +107,7 @@ module files
          integer(c_int), value :: descriptor
       end function isatty
 
-      !> Rows, columns and two sizes in pixels of a terminal; -1 where the system knows the request by another number.
+      !> Asks for rows, columns and pixels of a terminal; -1 where the system knows the request by another number.
       integer(c_int) function ioctl(descriptor, request, sizes) bind(c)
          import :: c_int, c_long, c_short
          integer(c_int), value :: descriptor
@@ -165,8 +165,8 @@ contains
       status = c_remove(path//PART//c_null_char)
    end subroutine remove_part
 
-   !> A whole file as text. Not by a Fortran unit: two threads that read one file would be refused. good is false, and
-   !> text is what was read, where that fails.
+   !> Reads a whole file as text. Not by a Fortran unit: two threads that read one file would be refused. good is false,
+   !> and text is what was read, where that fails.
    subroutine read_whole(path, text, good)
       character(*), intent(in) :: path
       character(:), allocatable, intent(out) :: text
@@ -197,14 +197,14 @@ contains
       if (fclose(file) /= 0) good = .false.
    end subroutine read_whole
 
-   !> The standard output as a file of its own: to close it leaves the standard output open. A null pointer where that
-   !> fails.
+   !> Opens the standard output as a file of its own: to close it leaves the standard output open. A null pointer where
+   !> that fails.
    type(c_ptr) function open_output()
       flush (output_unit)
       open_output = fdopen(dup(1_c_int), 'wb'//c_null_char)
    end function open_output
 
-   !> Folder of a path without its closing slash, '.' if the path has none.
+   !> Returns the folder of a path without its closing slash, '.' if the path has none.
    pure function folder_of(path) result(folder)
       character(*), intent(in) :: path
       character(:), allocatable :: folder
@@ -216,7 +216,7 @@ contains
       if (slash > 0) folder = path(:max(1, slash - 1))
    end function folder_of
 
-   !> Path of a file that another file names: a relative one begins at the folder of that.
+   !> Finds the path of a file that another file names: a relative one begins at the folder of that.
    pure function beside(file, named) result(path)
       character(*), intent(in) :: file, named
       character(:), allocatable :: path
@@ -250,7 +250,7 @@ contains
       status = fclose(file)
    end subroutine settle_file
 
-   !> The characters of a text as bytes.
+   !> Returns the characters of a text as bytes.
    pure function bytes_of(text) result(bytes)
       character(*), intent(in) :: text
       integer(c_int8_t) :: bytes(len(text))
@@ -273,7 +273,7 @@ contains
       to_terminal = isatty(1_c_int) == 1
    end function to_terminal
 
-   !> Columns of the terminal that standard output is; 80 where the system does not say.
+   !> Counts columns of the terminal that standard output is; 80 where the system does not say.
    integer function terminal_width() result(width)
       integer(c_long), parameter :: TIOCGWINSZ = int(z'5413', c_long)   ! Linux
       integer(c_short) :: sizes(4)

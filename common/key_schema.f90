@@ -102,8 +102,8 @@ contains
       end do
    end subroutine refuse_idle_keys
 
-   !> Why a key of a group has no effect beside the other keys, as the end of a sentence: " without cycle_by"; empty if
-   !> it has one. Conditions that begin with `:` are left to the program.
+   !> Says why a key of a group has no effect beside the other keys, as the end of a sentence: " without cycle_by";
+   !> empty if it has one. Conditions that begin with `:` are left to the program.
    pure function idle_reason(keys, key, group) result(why)
       type(key_t), intent(in) :: keys(:), key
       type(group_t), intent(in) :: group
@@ -138,7 +138,7 @@ contains
       end do
    end function idle_reason
 
-   !> " without a or b" where a group gives none of some keys, divided by |; else empty.
+   !> Says " without a or b" where a group gives none of some keys, divided by |; else empty.
    pure function lacking(group, names) result(why)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: names
@@ -226,7 +226,7 @@ contains
       is_word = index(BETWEEN//trim(words)//BETWEEN, BETWEEN//lower_case(trim(word))//BETWEEN) > 0
    end function is_word
 
-   !> The words of a key, one by one. Empty where the key takes none. words(:) has as many entries as the key has words.
+   !> Lists the words of a key, one by one, in words(:). It is empty where the key takes none.
    pure function words_of(key) result(words)
       type(key_t), intent(in) :: key
       character(LONGEST_WORD), allocatable :: words(:)
@@ -243,7 +243,7 @@ contains
       end do
    end function words_of
 
-   !> Place of a key among the keys, case ignored, 0 if there is none of that name. keys(:) of any size.
+   !> Finds the place of a key among the keys, case ignored, 0 if there is none of that name. keys(:) of any size.
    pure integer function place_of(keys, group, name) result(place)
       type(key_t), intent(in) :: keys(:)
       character(*), intent(in) :: group, name
@@ -254,7 +254,7 @@ contains
       place = 0
    end function place_of
 
-   !> "from 0.01 to 5: void ratio", the range in the unit of the key.
+   !> Says "from 0.01 to 5: void ratio", the range in the unit of the key.
    pure function described(key) result(text)
       type(key_t), intent(in) :: key
       character(:), allocatable :: text
@@ -279,7 +279,7 @@ contains
       given = find_entry(group, name) > 0
    end function given
 
-   !> Line of a key, or of its group where the key is not given.
+   !> Finds the line of a key, or of its group where the key is not given.
    pure integer function line_of(group, name) result(line)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -319,7 +319,7 @@ contains
       end do
    end function numbers_of
 
-   !> A text; `value` stays where the group has none.
+   !> Takes a text; `value` stays where the group has none.
    pure subroutine get_text(group, name, value)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name
@@ -330,8 +330,8 @@ contains
       if (place > 0) value = group%entries(place)%values(1)
    end subroutine get_text
 
-   !> A number that was checked; `value` stays where the group has none. In the unit of the key; found tells whether the
-   !> group has it.
+   !> Takes a number that was checked; `value` stays where the group has none. In the unit of the key; found tells
+   !> whether the group has it.
    subroutine get_number(group, name, value, found)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name

@@ -27,7 +27,7 @@ module key_table
    ! Of every procedure: `acts` says when the key has an effect, see key_t; REQUIRED: it must be given. Where there is a
    ! `unit`, it is kPa, in which the range is said: it is converted to the unit of the group.
 contains
-   !> A table that reads a group and keeps its keys.
+   !> Makes a table that reads a group and keeps its keys.
    pure type(key_table_t) function reading(group) result(table)
       type(group_t), intent(in) :: group
 
@@ -35,7 +35,7 @@ contains
       allocate (table%keys(0))
    end function reading
 
-   !> A table that lists the keys of a group.
+   !> Makes a table that lists the keys of a group.
    pure type(key_table_t) function listing(name) result(table)
       character(*), intent(in) :: name
 
@@ -52,7 +52,7 @@ contains
       given = lacking(self%group, names) == ''
    end function given
 
-   !> Range and meaning of a key that was declared, of a table that keeps its keys.
+   !> Says range and meaning of a key that was declared, of a table that keeps its keys.
    pure function about(self, name) result(sentence)
       class(key_table_t), intent(in) :: self
       character(*), intent(in) :: name
@@ -99,7 +99,7 @@ contains
       call get_number(self%group, name, value, found)
    end subroutine number
 
-   !> An integer.
+   !> Declares an integer.
    subroutine whole(self, name, value, lower, upper, meaning, acts)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, meaning
@@ -114,7 +114,7 @@ contains
       if (found) value = nint(found_value)
    end subroutine whole
 
-   !> The number of a word among those of the key, from 1; 0: none.
+   !> Declares the number of a word among those of the key, from 1; 0: none.
    subroutine word(self, name, value, words, meaning, acts)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, words, meaning
@@ -164,7 +164,7 @@ contains
       value = found
    end subroutine text
 
-   !> A list of numbers, empty where it is not given.
+   !> Declares a list of numbers, empty where it is not given.
    subroutine numbers(self, name, values, lower, upper, meaning, acts, unit, count)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, meaning
@@ -180,7 +180,7 @@ contains
       values = numbers_of(self%group, name)
    end subroutine numbers
 
-   !> A list of integers, empty where it is not given.
+   !> Declares a list of integers, empty where it is not given.
    subroutine wholes(self, name, values, lower, upper, meaning, acts)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, meaning
@@ -192,7 +192,7 @@ contains
       values = nint(numbers_of(self%group, name))
    end subroutine wholes
 
-   !> A list of texts, empty where it is not given; with `words` each is one of these.
+   !> Declares a list of texts, empty where it is not given; with `words` each is one of these.
    subroutine texts(self, name, values, meaning, acts, words)
       class(key_table_t), intent(inout) :: self
       character(*), intent(in) :: name, meaning

@@ -43,8 +43,8 @@ module namelists
    end type word_t
 
 contains
-   !> All groups of a file, in their order. A file that cannot be read, or a mistake in it, is a fault (EXIT_INPUT) with
-   !> file and line; groups is empty if it cannot be read.
+   !> Reads all groups of a file, in their order. A file that cannot be read, or a mistake in it, is a fault
+   !> (EXIT_INPUT) with file and line; groups is empty if it cannot be read.
    subroutine read_groups(file, groups, fault)
       character(*), intent(in) :: file
       type(group_t), allocatable, intent(out) :: groups(:)
@@ -61,7 +61,7 @@ contains
       end if
    end subroutine read_groups
 
-   !> All groups of a text of several lines, in their order. A mistake is a fault (EXIT_INPUT) with file and line;
+   !> Reads all groups of a text of several lines, in their order. A mistake is a fault (EXIT_INPUT) with file and line;
    !> groups has those before it. groups(:) may be empty.
    subroutine groups_of_text(text, file, groups, fault)
       character(*), intent(in) :: text
@@ -144,8 +144,8 @@ contains
       end do
    end subroutine read_line
 
-   !> Place where the text that is quoted from `first` on ends; beyond the line if it does not. Two quotes do not end
-   !> it.
+   !> Finds the place where the text that is quoted from `first` on ends; beyond the line if it does not. Two quotes do
+   !> not end it.
    pure integer function closing_quote(text, first) result(last)
       character(*), intent(in) :: text
       integer, intent(in) :: first
@@ -160,7 +160,7 @@ contains
       end do
    end function closing_quote
 
-   !> A quoted text without its quotes; two quotes inside are one.
+   !> Returns a quoted text without its quotes; two quotes inside are one.
    pure function unquoted(text)
       character(*), intent(in) :: text
       character(:), allocatable :: unquoted
@@ -321,7 +321,7 @@ contains
       end associate
    end subroutine check_last_entry
 
-   !> Place of a key among a group's entries, 0 if it is not there; case ignored, as in a namelist.
+   !> Finds the place of a key among a group's entries, 0 if it is not there; case ignored, as in a namelist.
    pure integer function find_entry(group, key) result(place)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: key

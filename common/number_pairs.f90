@@ -11,9 +11,9 @@ module number_pairs
 
    integer, parameter :: LINE_LENGTH = 1024
 contains
-   !> Both columns of a file; a relative path begins at the folder of the file that names it. first(:) and second(:) are
-   !> as long as the file has pairs, in the units of the file. A fault (EXIT_INPUT), with file and line, where it cannot
-   !> be read or a line is no pair.
+   !> Reads both columns of a file; a relative path begins at the folder of the file that names it. first(:) and
+   !> second(:) are as long as the file has pairs, in the units of the file. A fault (EXIT_INPUT), with file and line,
+   !> where it cannot be read or a line is no pair.
    subroutine read_pairs(named, from_file, from_line, meaning, first, second, fault)
       character(*), intent(in) :: named       !< Path as it is written.
       character(*), intent(in) :: from_file   !< File that names it, and where.

@@ -6,8 +6,8 @@ module spelling
    private
    public :: nearest_name
 contains
-   !> Place of the name that looks most like a word, the first of equals; 0 if there are no names. Edit distance of
-   !> Levenshtein, case ignored; letters that look alike count half. names(:) of any size, among(:) of the same.
+   !> Finds the place of the name that looks most like a word, the first of equals; 0 if there are no names. The
+   !> distance is Levenshtein's, case ignored; letters that look alike count half. names(:) and among(:) have one size.
    pure integer function nearest_name(word, names, among) result(best)
       character(*), intent(in) :: word, names(:)
       logical, intent(in), optional :: among(:)   !< Names that count; default: all.
@@ -26,8 +26,8 @@ contains
       end do
    end function nearest_name
 
-   !> Edit distance between two names, case ignored: 2 for each letter to insert, delete or replace, 1 where the two
-   !> letters look alike (O and 0, l and 1).
+   !> Counts the edit distance between two names, case ignored: 2 for each letter to insert, delete or replace, 1 where
+   !> the two letters look alike (O and 0, l and 1).
    pure integer function distance(first, second)
       character(*), intent(in) :: first, second
       character(len_trim(first)) :: a

@@ -26,7 +26,7 @@ module texts
       end function strlen
    end interface
 contains
-   !> The text with ASCII letters in lower case.
+   !> Returns the text with ASCII letters in lower case.
    elemental function lower_case(text) result(lower)
       character(*), intent(in) :: text
       character(len(text)) :: lower
@@ -47,7 +47,7 @@ contains
       if (index(text, MARK) == 1) mark_length = len(MARK)
    end function mark_length
 
-   !> Words, without the blanks behind them, and a text between each two.
+   !> Joins words, without the blanks behind them, and a text between each two.
    pure function joined(words, between) result(line)
       character(*), intent(in) :: words(:), between
       character(:), allocatable :: line
@@ -60,7 +60,8 @@ contains
       end do
    end function joined
 
-   !> First place in a text of a word that no letter, digit or underscore continues, 0 if there is none; case ignored.
+   !> Finds the first place in a text of a word that no letter, digit or underscore continues, 0 if there is none; case
+   !> ignored.
    pure integer function word_place(text, word)
       character(*), intent(in) :: text, word
       character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyz0123456789_'
@@ -80,7 +81,8 @@ contains
       word_place = merge(0, word_place - 1, next == 0)
    end function word_place
 
-   !> A number with six significant digits and nothing superfluous. Without a unit; 'not finite' for NaN and infinity.
+   !> Writes a number with six significant digits and nothing superfluous. Without a unit; 'not finite' for NaN and
+   !> infinity.
    pure function short(value, digits) result(text)
       real(wp), intent(in) :: value
       integer, intent(in), optional :: digits   !< So many significant ones instead.
@@ -190,7 +192,8 @@ contains
       looks_like_number = index(text(start:mark - 1), '.') == index(text(start:mark - 1), '.', back=.true.)
    end function looks_like_number
 
-   !> Text of a C buffer, up to its terminating null. Without one, up to the last character that is not blank.
+   !> Returns the text of a C buffer, up to its terminating null. Without one, up to the last character that is not
+   !> blank.
    pure function from_c(buffer) result(text)
       character(*), intent(in) :: buffer
       character(:), allocatable :: text
@@ -201,7 +204,7 @@ contains
       text = buffer(:last)
    end function from_c
 
-   !> A text of C, without its null. The pointer is not NULL.
+   !> Returns a text of C, without its null. The pointer is not NULL.
    function text_at(place) result(text)
       type(c_ptr), intent(in) :: place
       character(:), allocatable :: text

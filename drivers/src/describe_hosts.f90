@@ -127,7 +127,7 @@ contains
       end select
    end subroutine print_host
 
-   !> Eight values a line, as Abaqus reads them, and the state variables with their names.
+   !> Writes eight values a line, as Abaqus reads them, and the state variables with their names.
    subroutine print_abaqus(material)
       type(named_material_t), intent(in) :: material
       integer(c_int) :: i
@@ -156,7 +156,7 @@ contains
       write (output_unit, '(a)') '*DEPVAR', whole(state_count(material%props))
    end subroutine print_calculix
 
-   !> One entry of "properties", with the Variables that carry the soil.
+   !> Writes one entry of "properties", with the Variables that carry the soil.
    subroutine print_kratos(material, by_udsm)
       type(named_material_t), intent(in) :: material
       logical, intent(in) :: by_udsm
@@ -184,7 +184,7 @@ contains
       write (output_unit, '(a)') '      },', '      "Tables": {}', '   }', '}]}'
    end subroutine print_kratos
 
-   !> Two pieces of a .prj: into <process>, and into <parameters>.
+   !> Writes two pieces of a .prj: into <process>, and into <parameters>.
    subroutine print_ogs(material, behaviour)
       type(named_material_t), intent(in) :: material
       character(*), intent(in) :: behaviour
@@ -234,7 +234,7 @@ contains
       end do
    end subroutine print_udsm
 
-   !> Numbers, eight a line.
+   !> Writes numbers, eight a line.
    subroutine print_cards(values, indent, ends)
       real(wp), intent(in) :: values(:)
       character(*), intent(in) :: indent, ends   !< Before a line; behind one that another follows.
@@ -255,7 +255,7 @@ contains
       end do
    end subroutine print_cards
 
-   !> Name and origin of a material, on a line.
+   !> Writes name and origin of a material, on a line.
    function headline(material) result(line)
       type(named_material_t), intent(in) :: material
       character(:), allocatable :: line

@@ -73,8 +73,8 @@ contains
       end do
    end function cells
 
-   !> The shortest of the usual ways to write a number. Large and small ones with three digits, others with six decimals
-   !> at most.
+   !> Finds the shortest of the usual ways to write a number. Large and small ones with three digits, others with six
+   !> decimals at most.
    pure function number(value) result(string)
       real(c_double), intent(in) :: value
       character(:), allocatable :: string

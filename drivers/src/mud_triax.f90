@@ -121,7 +121,7 @@ contains
       if (fault%code == 0 .and. test%accuracy > 0.0_wp) call show_accuracy(answer, quiet .or. table%to_screen)
    end subroutine run
 
-   !> The estimates, and a warning, also where the run is quiet, where they are beyond what was asked for.
+   !> Prints the estimates, and a warning, also where the run is quiet, where they are beyond what was asked for.
    subroutine show_accuracy(answer, quiet)
       type(accuracy_t), intent(in) :: answer
       logical, intent(in) :: quiet

@@ -72,7 +72,7 @@ contains
       code = fault%code
    end subroutine run_text
 
-   !> Number of rows, 0 without a handle.
+   !> Counts the rows, 0 without a handle.
    integer(c_int) function triax_rows(handle) bind(c, name='mud_triax_rows')
       type(c_ptr), value :: handle
       type(table_t), pointer :: result
@@ -83,7 +83,7 @@ contains
       triax_rows = result%rows
    end function triax_rows
 
-   !> Number of columns, 0 without a handle.
+   !> Counts the columns, 0 without a handle.
    integer(c_int) function triax_columns_(handle) bind(c, name='mud_triax_columns')
       type(c_ptr), value :: handle
       type(table_t), pointer :: result
@@ -119,7 +119,7 @@ contains
       end associate
    end function triax_column
 
-   !> All values, column after column. (rows, columns), in the units of triax_column; -1: no handle or no room.
+   !> Copies all values, column after column. (rows, columns), in the units of triax_column; -1: no handle or no room.
    integer(c_int) function triax_values(handle, values) bind(c, name='mud_triax_values')
       type(c_ptr), value :: handle, values
       type(table_t), pointer :: result

@@ -237,7 +237,7 @@ contains
                    'most updates of the material; then the test stops (for fits); default: no limit')
    end subroutine read_settings
 
-   !> The law of a case, with its retention curve.
+   !> Makes the law of a case, with its retention curve.
    subroutine read_material(group, of_retention, groups, test, fault)
       type(group_t), intent(in) :: group
       integer, intent(in) :: of_retention   !< Among the groups; 0: none.
@@ -261,7 +261,7 @@ contains
       if (fault%code == 0) call move_alloc(law, test%soil%law)
    end subroutine read_material
 
-   !> The sample where a test begins, and its air and water. Fault EXIT_INPUT: keys contradict each other, the air
+   !> Makes the sample where a test begins, and its air and water. Fault EXIT_INPUT: keys contradict each other, the air
    !> pressure is below vacuum, or the law refuses the start.
    subroutine read_initial(k, soil, start, fault)
       type(key_table_t), intent(inout) :: k
@@ -335,7 +335,7 @@ contains
       end if
    end subroutine check_initial
 
-   !> The sample under its stress. Fault EXIT_INPUT: the law refuses the start, or no laboratory can make it.
+   !> Makes the sample under its stress. Fault EXIT_INPUT: the law refuses the start, or no laboratory can make it.
    subroutine start_sample(k, initial, soil, start, fault)
       type(key_table_t), intent(in) :: k
       type(initial_t), intent(in) :: initial

@@ -73,7 +73,7 @@ contains
       end do
    end function columns_shown
 
-   !> Values of all columns. In the order of COLUMNS; stresses in the unit of the law, compression positive.
+   !> Finds the values of all columns. In the order of COLUMNS; stresses in the unit of the law, compression positive.
    pure function values_of(soil, point, run, error, stage) result(values)
       type(soil_t), intent(in) :: soil
       type(point_t), intent(in) :: point

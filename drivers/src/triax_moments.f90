@@ -51,9 +51,9 @@ contains
       moments%values(:, moments%n) = values
    end subroutine note_moment
 
-   !> Largest difference of every column, at the increments of the coarse run that the fine one has too: `parts` of its
-   !> make one. Ends of ways are compared with each other. Huge where a way of the one is not in the other. (columns),
-   !> each in its unit. For docs/theory/accuracy.md section 5.
+   !> Finds the largest difference of every column, at the increments of the coarse run that the fine one has too:
+   !> `parts` of its make one. Ends of ways are compared with each other. Huge where a way of the one is not in the
+   !> other. (columns), each in its unit. For docs/theory/accuracy.md section 5.
    pure function differences(coarse, fine, parts) result(apart)
       type(moments_t), intent(in) :: coarse, fine
       integer, intent(in) :: parts
@@ -91,7 +91,7 @@ contains
       end do
    end function before
 
-   !> Largest change of every column. (columns), each in its unit; 0 of an empty record.
+   !> Finds the largest change of every column. (columns), each in its unit; 0 of an empty record.
    pure function ranges(moments) result(range)
       type(moments_t), intent(in) :: moments
       real(wp) :: range(size(COLUMNS))

@@ -53,7 +53,7 @@ contains
       call header(test, table, fault)
    end subroutine open_table
 
-   !> A table that stays in memory. Raises no fault.
+   !> Opens a table that stays in memory. Raises no fault.
    subroutine open_memory_table(test, table, fault)
       type(case_t), intent(in) :: test
       type(table_t), intent(out) :: table

@@ -43,8 +43,8 @@ module triax_point
    end type tangent_t
 
 contains
-   !> A sample at rest under an effective stress. Compression positive. Fault EXIT_INPUT: the law refuses it, as its
-   !> sentence says. Where s_w > 0 the law starts from that degree of saturation.
+   !> Makes a sample at rest under an effective stress. Compression positive. Fault EXIT_INPUT: the law refuses it, as
+   !> its sentence says. Where s_w > 0 the law starts from that degree of saturation.
    subroutine start_point(soil, stress, suction, ratio, s_w, point, fault)
       type(soil_t), intent(in) :: soil
       real(wp), intent(in) :: stress(6)   !< [unit of stress of the law]
@@ -69,7 +69,7 @@ contains
       point%suction = suction
    end subroutine start_point
 
-   !> A sample with the state variables of an earlier one, unchanged and unchecked. Compression positive. Fault
+   !> Makes a sample with the state variables of an earlier one, unchanged and unchecked. Compression positive. Fault
    !> EXIT_INPUT: the law has another number of them.
    subroutine restore_point(soil, stress, suction, state, point, fault)
       type(soil_t), intent(in) :: soil

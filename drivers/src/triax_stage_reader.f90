@@ -26,8 +26,8 @@ module triax_stage_reader
    integer, parameter :: NORMAL = 3            !< Components up to this are normal ones.
    character(*), parameter :: KPA = KILOPASCAL%name
 contains
-   !> A stage from its group, whose entries were checked. Fault EXIT_INPUT: a control or word is unknown, or keys are
-   !> missing, contradict each other or have no effect.
+   !> Makes a stage from its group, whose entries were checked. Fault EXIT_INPUT: a control or word is unknown, or keys
+   !> are missing, contradict each other or have no effect.
    subroutine read_stage(k, stage, fault)
       type(key_table_t), intent(inout) :: k
       type(test_stage_t), intent(out) :: stage
@@ -148,7 +148,7 @@ contains
       either = limit*max(1.0_wp, k%per_kpa)
    end function either
 
-   !> Increments, rows of the output, and what ends the stage before its time.
+   !> Reads increments, rows of the output, and what ends the stage before its time.
    subroutine read_steps(k, stage, fault)
       type(key_table_t), intent(in) :: k
       type(test_stage_t), intent(inout) :: stage
@@ -223,7 +223,7 @@ contains
                   trim(words(nearest_name(word, words)))//' (one of '//list//').', fault)
    end subroutine read_word
 
-   !> Cycles: by what, how many, how far. The stage is then led by the strain that is driven.
+   !> Reads cycles: by what, how many, how far. The stage is then led by the strain that is driven.
    subroutine read_cycles(k, stage, fault)
       type(key_table_t), intent(in) :: k
       type(test_stage_t), intent(inout) :: stage
@@ -299,7 +299,7 @@ contains
       end if
    end subroutine read_lead
 
-   !> The path of suction.
+   !> Reads the path of suction.
    subroutine read_water(k, stage, fault)
       type(key_table_t), intent(in) :: k
       type(test_stage_t), intent(inout) :: stage

@@ -83,8 +83,8 @@ contains
                     short(stage%suction_increment)//' '//trim(soil%law%unit%name)//'; remove it.')
    end subroutine begin_stage
 
-   !> One increment; at its end the run of the stage says whether it calls for a row and whether the stage is over.
-   !> Faults: those of advance; EXIT_RUN: the stress of a cycle is not reached within a strain of MAX_WAY.
+   !> Makes one increment; at its end the run of the stage says whether it calls for a row and whether the stage is
+   !> over. Faults: those of advance; EXIT_RUN: the stress of a cycle is not reached within a strain of MAX_WAY.
    subroutine next_increment(soil, stage, run, point, tally, fault)
       type(soil_t), intent(in) :: soil
       type(test_stage_t), intent(in) :: stage
@@ -188,7 +188,7 @@ contains
       end if
    end subroutine next_way
 
-   !> Distance of the stress of a cycle from its reversal [unit of stress of the law].
+   !> Finds the distance of the stress of a cycle from its reversal [unit of stress of the law].
    pure real(wp) function missing(soil, stage, run, point)
       type(soil_t), intent(in) :: soil
       type(test_stage_t), intent(in) :: stage
@@ -198,7 +198,7 @@ contains
       missing = run%direction*(run%goal - quantity(soil, stage, stage%cycle_by, point))
    end function missing
 
-   !> The part of an increment after which the stress of a cycle is reached: regula falsi with bisection (Illinois).
+   !> Finds after which part of an increment the stress of a cycle is reached: regula falsi with bisection (Illinois).
    subroutine find_goal(soil, stage, run, before, point, tally, fault)
       type(soil_t), intent(in) :: soil
       type(test_stage_t), intent(in) :: stage
@@ -247,7 +247,7 @@ contains
       if (shear_control(stage%control)) confining_stress = point%stress(AXIAL)
    end function confining_stress
 
-   !> Share of the stage that is done, for the progress report. [-]
+   !> Finds the share of the stage that is done, for the progress report. [-]
    pure real(wp) function share_done(run)
       type(stage_run_t), intent(in) :: run
 

@@ -82,7 +82,7 @@ contains
       self%good = .false.
    end subroutine refuse
 
-   !> A number, a list or a table.
+   !> Exchanges a number, a list or a table.
    subroutine exchange_reals(self, name, values, unit, meaning)
       class(archive_t), intent(inout) :: self
       character(*), intent(in) :: name, unit, meaning
@@ -128,7 +128,7 @@ contains
       value = int(numbers(1))
    end subroutine exchange_whole
 
-   !> A count that may pass 2**31; never below 0.
+   !> Exchanges a count that may pass 2**31 and is never below 0.
    subroutine exchange_long(self, name, value, unit, meaning)
       class(archive_t), intent(inout) :: self
       character(*), intent(in) :: name, unit, meaning
@@ -162,7 +162,7 @@ contains
       value = number == 1
    end subroutine exchange_flag
 
-   !> Up to 64 characters; a text that the file does not have is blank.
+   !> Exchanges up to 64 characters; a text that the file does not have is blank.
    subroutine exchange_text(self, name, text)
       class(archive_t), intent(inout) :: self
       character(*), intent(in) :: name
@@ -171,8 +171,8 @@ contains
       call self%move_text(self%within//name, text)
    end subroutine exchange_text
 
-   !> The extents of a list that need not be allocated: those of the part, or those of the file, which must be the true
-   !> ones. -1: not allocated.
+   !> Exchanges extents of a list that need not be allocated: those of the part, or those of the file, which must be the
+   !> true ones. -1: not allocated.
    subroutine exchange_extents(self, name, extents)
       class(archive_t), intent(inout) :: self
       character(*), intent(in) :: name

@@ -36,9 +36,9 @@ module hdf5_file
       module procedure put_real, put_integer
    end interface put
 contains
-   !> An empty file, in memory until write_file. `guarded`: in the format of HDF5 1.10, which has checksums over its
-   !> structure too, the place of every dataset included; what reads it must not be older.
-   !> file%good is false after a failure, of this call or any later one.
+   !> Makes an empty file, which is in memory until write_file. `guarded`: in the format of HDF5 1.10, which has
+   !> checksums over its structure too, the place of every dataset included; what reads it must not be older. file%good
+   !> is false after a failure, of this call or any later one.
    subroutine new_file(file, path, guarded)
       type(h5_t), intent(out) :: file
       character(*), intent(in) :: path
@@ -129,7 +129,7 @@ contains
       if (size(values) > 0) call put_raw(file, name, H5T_NATIVE_INTEGER, shape(values), c_loc(values), unit, meaning)
    end subroutine put_integer
 
-   !> One chunk with a checksum; no time stamps, so that equal results are equal files.
+   !> Writes one chunk with a checksum and no time stamps, so that equal results are equal files.
    subroutine put_raw(file, name, kind, extent, values, unit, meaning)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, unit, meaning
@@ -160,7 +160,7 @@ contains
       call h5sclose_f(space, s(3))
    end subroutine put_raw
 
-   !> A fact about the whole file. file%good is false after a failure.
+   !> Writes a fact about the whole file. file%good is false after a failure.
    subroutine put_text(file, name, text)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name, text
@@ -188,7 +188,7 @@ contains
       call h5tclose_f(kind, s(3))
    end subroutine put_attribute
 
-   !> A text of the file, blank if it has none of that name. Cut to TEXT_LENGTH characters.
+   !> Reads a text of the file, blank if it has none of that name. Cut to TEXT_LENGTH characters.
    function get_text(file, name) result(text)
       type(h5_t), intent(in) :: file
       character(*), intent(in) :: name
@@ -245,8 +245,8 @@ contains
       call h5sclose_f(space, status)
    end subroutine extent_of_set
 
-   !> A dataset, of real numbers or integers, into an array, which must have its extent, else file%good is false and the
-   !> values stay. An empty array is not read.
+   !> Reads a dataset, of real numbers or integers, into an array, which must have its extent, else file%good is false
+   !> and the values stay. An empty array is not read.
    subroutine get(file, name, values)
       type(h5_t), intent(inout) :: file
       character(*), intent(in) :: name

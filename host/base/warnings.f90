@@ -17,8 +17,7 @@ module warnings
 
    type(warning_t), allocatable :: told(:)   !< Warnings of the run so far, each text once.
 contains
-   !> A line on standard error, which a quiet run prints as well; nothing where the run has given the warning of this
-   !> name.
+   !> Prints a line on standard error, in a quiet run as well; nothing where the run has given the warning of this name.
    subroutine print_warning(text, once)
       character(*), intent(in) :: text
       character(*), intent(in), optional :: once   !< Name of a warning that a run gives once.
@@ -49,7 +48,7 @@ contains
       if (.not. any([(told(i)%text == one%text, i=1, size(told))])) told = [told, one]
    end subroutine note
 
-   !> All that were given, each once; nothing if there were none.
+   !> Prints all that were given, each once; nothing if there were none.
    subroutine repeat_warnings(unit)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
       integer :: i

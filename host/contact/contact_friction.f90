@@ -38,7 +38,7 @@ contains
       if (.not. stiffness > 0.0_wp) stiffness = TANGENTIAL_SHARE*options%penalty
    end function tangential_stiffness
 
-   !> Share of a step that a node touches: all of it, or from where a gap closes that was open. [-]
+   !> Finds the share of a step that a node touches: all of it, or from where a gap closes that was open. [-]
    pure real(wp) function touching_share(gap_before, gap) result(share)
       real(wp), intent(in) :: gap_before, gap   !< Mean gaps, open > 0; the second is closed [m].
 
@@ -46,9 +46,9 @@ contains
       if (gap_before > 0.0_wp) share = -gap/(gap_before - gap)
    end function touching_share
 
-   !> Return mapping at a node: t = t_n + e_T slip, at most mu p + c in magnitude. A node that was open at the start of
-   !> the step slips from where it touches. docs/theory/contact.md section 9.
-   !> A node that slid one way at the iterate before sticks before it slides the other way.
+   !> Maps the traction of a node back: t = t_n + e_T slip, at most mu p + c in magnitude. A node that was open at the
+   !> start of the step slips from where it touches. docs/theory/contact.md section 9. A node that slid one way at the
+   !> iterate before sticks before it slides the other way.
    pure function traction_at(options, before, gap_before, gap, slip, side) result(t)
       type(contact_options_t), intent(in) :: options
       real(wp), intent(in) :: before            !< Traction at the start of the step [kPa].
@@ -77,8 +77,8 @@ contains
       t%value = sign(limit, t%value)
    end function traction_at
 
-   !> Weights times slips of a pair at the three slave nodes, and drag(:, A) = int M_A (t N_s, -t N_m) 2 pi r ds, the
-   !> nodal forces of a unit traction at node A; weight times slip is drag times the way of the nodes.
+   !> Sums weights times slips of a pair at the three slave nodes, and drag(:, A) = int M_A (t N_s, -t N_m) 2 pi r ds,
+   !> the nodal forces of a unit traction at node A; weight times slip is drag times the way of the nodes.
    !> docs/theory/contact.md section 9.
    pure subroutine pair_slips(points, dx, slip, drag)
       type(mortar_point_t), intent(in) :: points(:)

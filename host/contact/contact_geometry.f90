@@ -47,7 +47,7 @@ contains
       geometry%free = edges_of(2, :) == 0
    end subroutine contact_prepare
 
-   !> The edges of every node; at most two, of a middle node one.
+   !> Lists the edges of every node: at most two, of a middle node one.
    pure subroutine list_edges(edges, nodes, master, edges_of, status)
       integer, intent(in) :: edges(:, :), nodes
       logical, intent(in) :: master
@@ -140,7 +140,7 @@ contains
       end do
    end subroutine boxes_around
 
-   !> Box of the control polygon of every edge, which holds the curve: lower r, lower z, upper r, upper z.
+   !> Finds the box of the control polygon of every edge, which holds the curve: lower r, lower z, upper r, upper z.
    pure subroutine edge_boxes(x, edges, box)
       real(wp), intent(in) :: x(:, :)   !< (2, nodes) [m]
       integer, intent(in) :: edges(:, :)   !< (3, edges) start, end, middle.

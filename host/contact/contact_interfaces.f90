@@ -31,7 +31,7 @@ module contact_interfaces
       real(wp), allocatable :: x0(:, :)     !< (2, nodes) at the start [m]
    end type surface_t
 
-   !> A plate in the unknowns.
+   !> It moves the face of a contact by unknowns of the system.
    type :: plate_link_t
       class(plate_motion_t), allocatable :: motion    !< Not allocated: there is no plate.
       integer, allocatable :: field(:), node(:)       !< Fields and nodes that the unknowns of its motion are at.
@@ -64,7 +64,7 @@ module contact_interfaces
       procedure :: probe, begin_friction, accept_friction, exchange_friction
    end type contacts_t
 contains
-   !> Surface of the edges of a boundary.
+   !> Makes a surface of the edges of a boundary.
    function surface_of(edges, x) result(surface)
       integer, intent(in) :: edges(:, :)   !< (3, edges) nodes of the mesh: start, end, middle
       real(wp), intent(in) :: x(:, :)      !< (2, nodes) At the start [m].
@@ -82,14 +82,14 @@ contains
       surface%x0 = x(:, surface%node)
    end function surface_of
 
-   !> Length of the shortest edge of a surface, between its ends [m].
+   !> Finds the length of the shortest edge of a surface, between its ends [m].
    pure real(wp) function shortest_edge(surface) result(length)
       type(surface_t), intent(in) :: surface
 
       length = minval(norm2(surface%x0(:, surface%edges(2, :)) - surface%x0(:, surface%edges(1, :)), dim=1))
    end function shortest_edge
 
-   !> The straight edges between corners, body on the left.
+   !> Makes a surface of the straight edges between corners, with the body on their left.
    pure function plate_surface(corners) result(surface)
       real(wp), intent(in) :: corners(:, :)   !< (2, corners) [m]
       type(surface_t) :: surface
@@ -154,7 +154,7 @@ contains
       call link(dofs, one)
    end subroutine tie_to_plate
 
-   !> The unknowns of the plate beside those of the slave.
+   !> Puts the unknowns of the plate beside those of the slave.
    subroutine link(dofs, one)
       type(dofs_t), intent(in) :: dofs
       type(contact_interface_t), intent(inout) :: one
@@ -166,7 +166,7 @@ contains
       end associate
    end subroutine link
 
-   !> Unknowns of a plate at given displacements, as of plate_positions [m].
+   !> Returns the unknowns of a plate at given displacements, as plate_positions takes them [m].
    pure function motion_of(plate, x) result(q)
       type(plate_link_t), intent(in) :: plate
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
@@ -183,8 +183,8 @@ contains
       self%interfaces(:size(acts))%acts = acts
    end subroutine act
 
-   !> Everything at given displacements; false if a kernel refuses them. docs/theory/contact.md sections 2 to 4. A node
-   !> that slid before the last correction does not slide the other way: section 9.
+   !> Evaluates all contacts at given displacements; false if a kernel refuses them. docs/theory/contact.md sections 2
+   !> to 4. A node that slid before the last correction does not slide the other way: section 9.
    logical function evaluate(self, x, corrections, with_slopes) result(good)
       class(contacts_t), intent(inout) :: self
       real(wp), intent(in) :: x(:, :)
@@ -258,7 +258,7 @@ contains
       good = copy%probe(x)
    end subroutine probe_copy
 
-   !> One of them, with the friction that its step starts from; aside, no node has slid before. status: as of
+   !> Evaluates one contact, with the friction that its step starts from; aside, no node has slid before. status: as of
    !> contact_evaluate.
    subroutine probe_one(t, x, with_tangent, aside, status)
       type(contact_interface_t), intent(inout), target :: t
@@ -290,7 +290,7 @@ contains
                             outcome, status, t%friction)
    end subroutine probe_one
 
-   !> Displacements of the nodes of the master, or of the face of the plate [m].
+   !> Returns the displacements of the nodes of the master, or of the face of the plate [m].
    pure function displacements_of_master(t, x) result(u)
       type(contact_interface_t), intent(in) :: t
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].

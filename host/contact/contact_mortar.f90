@@ -70,7 +70,8 @@ module contact_mortar
       real(wp) :: value(3) = 0.0_wp, slope(12, 3) = 0.0_wp
    end type hat_sums_t
 contains
-   !> Piecewise linear on the halves of a slave edge: start, end, middle. docs/theory/contact.md section 2.3.
+   !> The hats are piecewise linear on the halves of a slave edge: start, end, middle. docs/theory/contact.md section
+   !> 2.3.
    pure function hats(s) result(m)
       real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: m(3)
@@ -78,7 +79,7 @@ contains
       m = [max(-s, 0.0_wp), max(s, 0.0_wp), 1.0_wp - abs(s)]
    end function hats
 
-   !> Slopes of the hat functions; a point never lies on the middle node, where segments end. By s [-].
+   !> Differentiates the hat functions by s; a point never lies on the middle node, where segments end [-].
    pure function hat_slopes(s) result(dm)
       real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: dm(3)
@@ -90,9 +91,9 @@ contains
       end if
    end function hat_slopes
 
-   !> The segments of a slave edge opposite a master edge. The bodies face each other, so the master edge runs against
-   !> the slave edge: its end has the first foot. Segments end at the feet of the master's three nodes and at the
-   !> slave's. None where they do not face each other within 78 degrees. docs/theory/contact.md section 2.2.
+   !> Finds the segments of a slave edge opposite a master edge. The bodies face each other, so the master edge runs
+   !> against the slave edge: its end has the first foot. Segments end at the feet of the master's three nodes and at
+   !> the slave's. None where they do not face each other within 78 degrees. docs/theory/contact.md section 2.2.
    pure subroutine find_overlap(x, free, overlap)
       real(wp), intent(in) :: x(2, 6)          !< Local coordinates [m].
       logical, intent(in) :: free(2)           !< The master's surface ends at the start, the end of its edge.
@@ -156,7 +157,7 @@ contains
       between = s - lower > SAME_PLACE .and. upper - s > SAME_PLACE
    end function between
 
-   !> Derivative of the foot s of master node j, from that of (x_j - x(s)).t(s) = 0. By the 12 local coordinates [1/m]:
+   !> Differentiates the foot s of master node j, where (x_j - x(s)).t(s) = 0, by the 12 local coordinates [1/m]:
    !> docs/theory/contact.md section 3.2.
    pure function end_slope(x, slave, j, s) result(d_s)
       real(wp), intent(in) :: x(2, 6), s   !< Local coordinates [m], place in [-1, 1].
@@ -177,8 +178,8 @@ contains
       d_s = d_s/(dot_product(t, t) - 2.0_wp*dot_product(y, slave%bend))
    end function end_slope
 
-   !> A point of a segment. `missed`: by how much of the master edge's length the normal misses it, 0 if it hits. Where
-   !> it misses, the rest of p is not filled. docs/theory/contact.md sections 2.1, 2.2 and 3.2.
+   !> Makes a point of a segment. `missed`: by how much of the master edge's length the normal misses it, 0 if it hits.
+   !> Where it misses, the rest of p is not filled. docs/theory/contact.md sections 2.1, 2.2 and 3.2.
    pure subroutine integration_point(x, overlap, segment, position, share, axisymmetric, p, missed)
       real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
@@ -244,8 +245,8 @@ contains
       p%d_area = 0.5_wp*share*(p%ring*p%d_span + p%span*p%d_ring)
    end subroutine integration_point
 
-   !> The integration points of a pair of edges. `missed` as of integration_point: the first n - 1 points hit, and all
-   !> of them where it is 0. docs/theory/contact.md section 2.2.
+   !> Makes the integration points of a pair of edges. `missed` as of integration_point: the first n - 1 points hit, and
+   !> all of them where it is 0. docs/theory/contact.md section 2.2.
    pure subroutine pair_points(x, overlap, at_ends, axisymmetric, p, n, missed)
       real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap
@@ -267,7 +268,7 @@ contains
       end do
    end subroutine pair_points
 
-   !> Weights int M 2 pi r dGamma of a pair of edges at the three slave nodes [m2] (plane: m), weights times gaps [m3]
+   !> Sums weights int M 2 pi r dGamma of a pair of edges at the three slave nodes [m2] (plane: m), times gaps [m3]
    !> (plane: m2), and push(:, A) = int M_A (nu N_s, -nu N_m) 2 pi r ds, the nodal forces of a unit pressure at node A.
    !> docs/theory/contact.md section 2.3.
    pure subroutine pair_gaps(points, weight, gap, push)
@@ -317,8 +318,8 @@ contains
       end do
    end subroutine add_unit_forces
 
-   !> Forces on the nodes of a pair, slave first, of a unit force along a direction that pushes the surfaces apart at a
-   !> point. docs/theory/contact.md sections 2.3 and 9.
+   !> Finds the forces on the nodes of a pair, slave first, of a unit force along a direction that pushes the surfaces
+   !> apart at a point. docs/theory/contact.md sections 2.3 and 9.
    pure function forces_on_nodes(p, along) result(force)
       type(mortar_point_t), intent(in) :: p
       real(wp), intent(in) :: along(2)   !< As long as the slave's tangent [m].
@@ -331,8 +332,8 @@ contains
       end do
    end function forces_on_nodes
 
-   !> Deepest penetration of a pair of edges [m], 0 if it is open: at the ends of the segments too, where corners are.
-   !> docs/theory/contact.md sections 2.1 and 2.4.
+   !> Finds the deepest penetration of a pair of edges [m], 0 if it is open: at the ends of the segments too, where
+   !> corners are. docs/theory/contact.md sections 2.1 and 2.4.
    pure real(wp) function penetration(x, overlap) result(depth)
       real(wp), intent(in) :: x(2, 6)   !< Local coordinates [m].
       type(overlap_t), intent(in) :: overlap

@@ -60,7 +60,7 @@ module contact_penalty
       integer :: pairs = 0                      !< Pairs of edges opposite each other.
    end type contact_result_t
 contains
-   !> Room for evaluations of prepared surfaces.
+   !> Makes room for evaluations of prepared surfaces.
    pure function new_workspace(geometry) result(work)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_workspace_t) :: work
@@ -75,7 +75,7 @@ contains
       allocate (work%left(unknowns), work%right(unknowns), work%load(geometry%slave_nodes), source=0.0_wp)
    end function new_workspace
 
-   !> Nothing in contact.
+   !> Makes a result in which nothing is in contact.
    pure function new_result(geometry) result(result)
       type(contact_geometry_t), intent(in) :: geometry
       type(contact_result_t) :: result
@@ -119,8 +119,8 @@ contains
       result%size = abs(result%force)
    end subroutine contact_evaluate
 
-   !> Weights of the whole slave edges. The hats bend at the middle node, so both halves are integrated. Sets
-   !> result%whole. docs/theory/contact.md section 2.3.
+   !> Sets result%whole, the weights of the whole slave edges. The hats bend at the middle node, so both halves are
+   !> integrated. docs/theory/contact.md section 2.3.
    pure subroutine find_whole(geometry, slave_x, result)
       type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :)   !< (2, nodes) [m]
@@ -146,7 +146,7 @@ contains
       end do
    end subroutine find_whole
 
-   !> Pairs of edges opposite each other, weights and gaps of the slave nodes.
+   !> Finds the edges opposite each other, and from them the weights and gaps of the slave nodes.
    pure subroutine find_gaps(geometry, slave_x, master_x, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
       real(wp), intent(in) :: slave_x(:, :), master_x(:, :)
@@ -197,7 +197,7 @@ contains
       end where
    end subroutine find_gaps
 
-   !> Pressures, energy, forces and tangent.
+   !> Finds pressures, energy, forces and tangent from the gaps.
    pure subroutine respond(geometry, with_tangent, work, result, status)
       type(contact_geometry_t), intent(in) :: geometry
       logical, intent(in) :: with_tangent
@@ -248,7 +248,7 @@ contains
       end if
    end subroutine respond
 
-   !> Friction: slips and tractions of the slave nodes, their forces and tangent. docs/theory/contact.md section 9.
+   !> Adds friction: slips and tractions of the slave nodes, their forces and tangent. docs/theory/contact.md section 9.
    pure subroutine add_friction(geometry, with_tangent, friction, work, result)
       type(contact_geometry_t), intent(in) :: geometry
       logical, intent(in) :: with_tangent
@@ -290,7 +290,7 @@ contains
       end do
    end subroutine add_friction
 
-   !> Work that sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is
+   !> Sums what sliding has dissipated from the start of a step to an evaluation [kN m]: traction times the slip that is
    !> not the penalty's. Never negative: sliding has the sign of its traction. docs/theory/contact.md section 9.
    pure real(wp) function slid_work(options, friction, result) result(total)
       type(contact_options_t), intent(in) :: options
@@ -342,7 +342,7 @@ contains
       end associate
    end subroutine press_points
 
-   !> Forces of a pair, and its stiffness where the tangent is wanted.
+   !> Adds the forces of a pair, and its stiffness where the tangent is wanted.
    pure subroutine add_response(unknown, response, with_tangent, result)
       integer, intent(in) :: unknown(12)   !< Numbers of the unknowns, as of unknowns_of.
       type(pair_response_t), intent(in) :: response
@@ -416,7 +416,7 @@ contains
       unknown(2:12:2) = unknown(1:11:2) + 1
    end function unknowns_of
 
-   !> Values at the nodes of a pair of edges, slave first.
+   !> Gathers values at the nodes of a pair of edges, those of the slave first.
    pure function of_edges(geometry, slave, master, of_slave, of_master) result(of_pair)
       type(contact_geometry_t), intent(in) :: geometry
       integer, intent(in) :: slave, master                     !< Numbers of the edges.

@@ -12,7 +12,7 @@ module contact_plate
    private
    public :: gather_on_plate, force_on_plate, new_spring_result, evaluate_springs, lengths_of_nodes
 contains
-   !> Slope of the energy against the unknowns of the plate: minus the forces that contact exerts on it [kN].
+   !> Sums the slope of the energy by the unknowns of the plate, minus the forces that contact exerts on it [kN].
    !> docs/theory/contact.md section 4.
    pure function force_on_plate(geometry, result, slopes) result(force)
       type(contact_geometry_t), intent(in) :: geometry
@@ -80,7 +80,7 @@ contains
       end do
    end subroutine gather_on_plate
 
-   !> An outcome of springs with the slopes, which are constant.
+   !> Makes an outcome of springs with the slopes, which are constant.
    pure function new_spring_result(geometry, stiffness) result(result)
       type(contact_geometry_t), intent(in) :: geometry   !< Every node has its place on the plate.
       real(wp), intent(in) :: stiffness(:)   !< (nodes) [kN/m]
@@ -100,7 +100,7 @@ contains
       end do
    end function new_spring_result
 
-   !> Forces and energy of springs at displacements. docs/theory/contact.md section 4.
+   !> Finds the forces and the energy of springs at displacements. docs/theory/contact.md section 4.
    pure subroutine evaluate_springs(stiffness, u, of_plate, result)
       real(wp), intent(in) :: stiffness(:)            !< (nodes) [kN/m]
       real(wp), intent(in) :: u(:, :), of_plate(:, :)   !< (2, nodes) of the nodes, and of their places on the plate [m]
@@ -113,7 +113,7 @@ contains
       result%energy = 0.5_wp*dot_product(pull, reshape(u - of_plate, [size(pull)]))
    end subroutine evaluate_springs
 
-   !> Share of every node in the length of a boundary, as its shape functions give it [m]. (nodes)
+   !> Finds the share of every node in the length of a boundary, as its shape functions give it [m]. (nodes)
    pure function lengths_of_nodes(edges, x) result(lengths)
       integer, intent(in) :: edges(:, :)   !< (3, edges) start, end, middle.
       real(wp), intent(in) :: x(:, :)      !< (2, nodes) [m]

@@ -27,7 +27,7 @@ module contact_projection
    !> A step of two units in the last place of 1 is rounding, not progress.
    real(wp), parameter :: ROUNDING = 2.0_wp*epsilon(1.0_wp)
 contains
-   !> Shape functions of an edge at s in [-1, 1]: start, end, middle.
+   !> Evaluates the shape functions of an edge at s in [-1, 1]: start, end, middle.
    pure function shapes(s) result(n)
       real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: n(3)
@@ -35,7 +35,7 @@ contains
       n = [-0.5_wp*s*(1.0_wp - s), 0.5_wp*s*(1.0_wp + s), (1.0_wp - s)*(1.0_wp + s)]
    end function shapes
 
-   !> Derivatives of the shape functions of an edge with respect to s.
+   !> Differentiates the shape functions of an edge by s.
    pure function shape_slopes(s) result(dn)
       real(wp), intent(in) :: s   !< In [-1, 1].
       real(wp) :: dn(3)
@@ -43,7 +43,7 @@ contains
       dn = [s - 0.5_wp, s + 0.5_wp, -2.0_wp*s]
    end function shape_slopes
 
-   !> Polynomial of an edge through three nodes.
+   !> Fits the polynomial of an edge through three nodes.
    pure function edge_of(x) result(edge)
       real(wp), intent(in) :: x(2, 3)   !< Start, end, middle [m].
       type(edge_t) :: edge
@@ -53,7 +53,7 @@ contains
       edge%bend = 0.5_wp*((x(:, 1) - x(:, 3)) + (x(:, 2) - x(:, 3)))
    end function edge_of
 
-   !> Coordinates of the point s of an edge [m].
+   !> Finds the coordinates of the point s of an edge [m].
    pure function place(edge, s) result(x)
       type(edge_t), intent(in) :: edge
       real(wp), intent(in) :: s   !< In [-1, 1].
@@ -62,7 +62,7 @@ contains
       x = edge%middle + s*(edge%slope + s*edge%bend)
    end function place
 
-   !> dx/ds, not of unit length. [m]
+   !> Differentiates the point of an edge by s, without scaling the tangent to unit length [m].
    pure function tangent(edge, s) result(t)
       type(edge_t), intent(in) :: edge
       real(wp), intent(in) :: s   !< In [-1, 1].
@@ -71,9 +71,9 @@ contains
       t = edge%slope + 2.0_wp*s*edge%bend
    end function tangent
 
-   !> Length of the shortest tangent over half the chord: 1 for a straight edge with its node in the middle, 0 where it
-   !> folds back on itself or a middle node at the quarter makes an end singular. A point has -1. A curved edge may lean
-   !> as much as it likes against its chord, as soil beside a plate that has sunk into it does. [-]
+   !> Finds the length of the shortest tangent over half the chord: 1 for a straight edge with its node in the middle, 0
+   !> where it folds back on itself or a middle node at the quarter makes an end singular. A point has -1. A curved edge
+   !> may lean as much as it likes against its chord, as soil beside a plate that has sunk into it does. [-]
    pure real(wp) function least_stretch(edge)
       type(edge_t), intent(in) :: edge
       real(wp) :: slope, bend, s
@@ -88,7 +88,7 @@ contains
       least_stretch = norm2(tangent(edge, min(max(s, -1.0_wp), 1.0_wp)))/slope
    end function least_stretch
 
-   !> Foot of a point on an edge: (point - x(s)).t(s) = 0. One foot as long as the point is nearer than the edge's
+   !> Finds the foot of a point on an edge, (point - x(s)).t(s) = 0. It is one where the point is nearer than the edge's
    !> centre of curvature, then the left side falls with s. docs/theory/contact.md section 2.1.
    pure subroutine project_point(edge, point, s, where_it_is)
       type(edge_t), intent(in) :: edge
@@ -116,8 +116,8 @@ contains
                          dot_product(edge%bend, t), 0.0_wp], s, where_it_is)
    end subroutine follow_normal
 
-   !> Root in [-1, 1] of a cubic that falls through it: Newton's method, and bisection where a step leaves the bracket
-   !> or does not halve it, so that it always ends.
+   !> Finds the root in [-1, 1] of a cubic that falls through it: Newton's method, and bisection where a step leaves the
+   !> bracket or does not halve it, so that it always ends.
    pure subroutine falling_root(k, s, where_it_is)
       real(wp), intent(in) :: k(0:3)   !< k0 + k1 s + k2 s**2 + k3 s**3
       real(wp), intent(out) :: s

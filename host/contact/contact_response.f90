@@ -29,7 +29,7 @@ module contact_response
       real(wp), allocatable :: value(:)         !< d force/d displacement; equal places are to be added [kN/m]
    end type nodal_forces_t
 contains
-   !> None, with room.
+   !> Makes room for forces, of which there are none yet.
    pure function new_forces(unknowns) result(forces)
       integer, intent(in) :: unknowns
       type(nodal_forces_t) :: forces
@@ -39,7 +39,7 @@ contains
       allocate (forces%value(FIRST_ROOM), source=0.0_wp)
    end function new_forces
 
-   !> Room for more triplets: it doubles, so that it soon stays as it is.
+   !> Makes room for more triplets: it doubles, so that it soon stays as it is.
    pure subroutine make_room(forces, more)
       class(nodal_forces_t), intent(inout) :: forces
       integer, intent(in) :: more   !< Triplets.
@@ -68,8 +68,8 @@ contains
       end do
    end subroutine add_column
 
-   !> Forces of a pair and, if wanted, their stiffness, of pressures or, where it slides, tractions of its slave nodes,
-   !> which are held. docs/theory/contact.md sections 3 and 9.
+   !> Adds the forces of a pair and, if wanted, their stiffness, of pressures or, where it slides, tractions of its
+   !> slave nodes, which are held. docs/theory/contact.md sections 3 and 9.
    pure subroutine nodal_response(points, slides, values, with_stiffness, response)
       type(mortar_point_t), intent(in) :: points(:)
       logical, intent(in) :: slides
@@ -86,8 +86,8 @@ contains
       end do
    end subroutine nodal_response
 
-   !> Forces of a pair and, if wanted, their stiffness, of a penalty on the gap at its points. docs/theory/contact.md
-   !> section 3.
+   !> Adds the forces of a pair and, if wanted, their stiffness, of a penalty on the gap at its points.
+   !> docs/theory/contact.md section 3.
    pure subroutine pointwise_response(points, penalty, with_stiffness, response)
       type(mortar_point_t), intent(in) :: points(:)
       real(wp), intent(in) :: penalty       !< [kN/m3]

@@ -49,7 +49,7 @@ contains
       has_friction = options%friction > 0.0_wp .or. options%cohesion > 0.0_wp
    end function has_friction
 
-   !> A status in words: what, where, the value, what is allowed and what to do.
+   !> Puts a status into words: what, where, the value, what is allowed and what to do.
    pure function contact_message(status) result(text)
       type(contact_status_t), intent(in) :: status
       character(:), allocatable :: text

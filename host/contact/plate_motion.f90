@@ -12,7 +12,7 @@ module plate_motion
       procedure :: displacements, slopes, bending
    end type plate_motion_t
 contains
-   !> Displacements of the nodes of the face. docs/theory/contact.md section 4.
+   !> Moves the nodes of the face. docs/theory/contact.md section 4.
    pure function displacements(self, x0, q) result(u)
       class(plate_motion_t), intent(in) :: self
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
@@ -23,7 +23,7 @@ contains
       u(2, :) = q(1)
    end function displacements
 
-   !> Slopes of the coordinates 2 (node - 1) + direction of the face against the unknowns of the motion [-].
+   !> Differentiates the coordinates 2 (node - 1) + direction of the face by the unknowns of the motion [-].
    pure function slopes(self, x0, q)
       class(plate_motion_t), intent(in) :: self
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]
@@ -34,7 +34,7 @@ contains
       slopes(1, 2::2) = 1.0_wp
    end function slopes
 
-   !> Tangent of forces on the face by slopes that change with the motion [kN/m].
+   !> Finds the tangent of forces on the face by slopes that change with the motion [kN/m].
    pure function bending(self, x0, q, force)
       class(plate_motion_t), intent(in) :: self
       real(wp), intent(in) :: x0(:, :)    !< (2, nodes) undisplaced [m]
@@ -45,7 +45,7 @@ contains
       bending = 0.0_wp
    end function bending
 
-   !> Nodes of the face where the plate has moved to. docs/theory/contact.md section 4.
+   !> Finds where the nodes of the face have moved to. docs/theory/contact.md section 4.
    pure function plate_positions(motion, x0, q) result(x)
       class(plate_motion_t), intent(in) :: motion
       real(wp), intent(in) :: x0(:, :)   !< (2, nodes) undisplaced [m]

@@ -26,8 +26,8 @@ module acoustic_tensor
       real(wp) :: mean, c2, s2, c4, s4
    end type determinant_t
 contains
-   !> Determinant of the acoustic tensor of a tangent. docs/theory/host.md section 16. The hoop strain does
-   !> not jump across a band.
+   !> Finds the determinant of the acoustic tensor of a tangent; the hoop strain does not jump across a band.
+   !> docs/theory/host.md section 16.
    pure type(determinant_t) function determinant_of(tangent) result(q)
       real(wp), intent(in) :: tangent(PLANE, PLANE)   !< d sigma'/d strain, engineering shear [kPa].
       real(wp) :: rr(3), rz(3), zr(3), zz(3)   !< Acoustic tensor: factors of cos2, cos sin, sin2.
@@ -51,7 +51,7 @@ contains
       q%s4 = (a(1) - a(3))/8
    end function determinant_of
 
-   !> Determinant for a normal [kPa2].
+   !> Evaluates the determinant for a normal [kPa2].
    elemental real(wp) function determinant_at(q, angle)
       type(determinant_t), intent(in) :: q
       real(wp), intent(in) :: angle   !< Angle of the normal from r towards z.
@@ -75,7 +75,7 @@ contains
       loses_ellipticity = least < bound
    end function loses_ellipticity
 
-   !> The least determinant and its normal. docs/theory/host.md section 16. Every one of the 32 angles with a smaller
+   !> Finds the least determinant and its normal. docs/theory/host.md section 16. Each of the 32 angles with a smaller
    !> value than its neighbours is refined by Newton's method: there are two at most.
    pure subroutine least_determinant(q, least, angle)
       type(determinant_t), intent(in) :: q
@@ -97,7 +97,7 @@ contains
       end do
    end subroutine least_determinant
 
-   !> Newton's method for the angle where the slope vanishes, kept within one spacing of the angle that it starts from.
+   !> Finds where the slope vanishes by Newton's method, within one spacing of the angle that it starts from.
    pure real(wp) function lowest_near(q, start) result(t)
       type(determinant_t), intent(in) :: q
       real(wp), intent(in) :: start

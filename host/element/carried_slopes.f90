@@ -22,7 +22,7 @@ module carried_slopes
       real(wp), allocatable :: water(:, :)       !< (2, points) d S_w/d volume strain [-], d S_w/d p_c [1/kPa]
    end type slopes_t
 contains
-   !> Room for the slopes of all points of a mesh; none are known yet.
+   !> Makes room for the slopes of all points of a mesh; none are known yet.
    pure function new_slopes(points) result(slopes)
       integer, intent(in) :: points   !< Number of points.
       type(slopes_t) :: slopes
@@ -47,8 +47,8 @@ contains
       end do
    end subroutine keep_slopes
 
-   !> The answer that straight lines along the slopes give; the void ratio is exact. docs/theory/host.md section 5.4;
-   !> the void ratio: section 3.2; S_w is kept between 0 and 1. n points of the mesh from `first` on.
+   !> Takes the answer that straight lines along the slopes give; the void ratio is exact. docs/theory/host.md section
+   !> 5.4; the void ratio: section 3.2; S_w is kept between 0 and 1. n points of the mesh from `first` on.
    pure subroutine follow_slopes(n, first, slopes, stress, e, s_w, strain, d_suction, answer)
       integer, intent(in) :: n, first
       type(slopes_t), intent(in) :: slopes
@@ -73,7 +73,7 @@ contains
       end do
    end subroutine follow_slopes
 
-   !> The answer that a pass by the material left in the state at the end of the step, with the slopes it kept.
+   !> Takes the answer that a pass by the material left in the state at the end of the step, with the slopes it kept.
    !> docs/theory/host.md section 5.4. n points of the mesh from `first` on.
    pure subroutine kept_response(n, first, slopes, stress, e, s_w, answer)
       integer, intent(in) :: n, first

@@ -18,7 +18,7 @@ module degrees_of_freedom
       integer, allocatable :: node(:)         !< A node of every unknown.
    end type dofs_t
 contains
-   !> Node by node, which keeps the fields of a node together. docs/theory/host.md sections 3.5, 7.3 and 7.6.
+   !> Numbers node by node, which keeps the fields of a node together. docs/theory/host.md sections 3.5, 7.3 and 7.6.
    subroutine number_unknowns(domain, ties, dofs)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: ties(:, :)   !< (FIELDS, nodes): node whose unknown this node shares, 0 or itself: its own.

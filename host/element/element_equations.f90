@@ -51,7 +51,7 @@ module element_equations
       type(response_t) :: response
    end type points_t
 contains
-   !> Unknowns of an element.
+   !> Counts the unknowns of an element.
    pure integer function element_size(domain, element)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element   !< Number of the element.
@@ -63,9 +63,9 @@ contains
       end associate
    end function element_size
 
-   !> Stress, saturation and void ratio at the points of the elements of a block, and their slopes; the state variables
-   !> of `new`. Where a strain of the step is beyond 1 or the material refuses, block%report says why; the response is
-   !> then of no use.
+   !> Finds stress, saturation and void ratio at the points of the elements of a block, and their slopes; the state
+   !> variables of `new`. Where a strain of the step is beyond 1 or the material refuses, block%report says why; the
+   !> response is then of no use.
    subroutine update_block(domain, scheme, old, new, with_tangent, slopes, block, points)
       type(domain_t), intent(in), target :: domain
       type(scheme_t), intent(in) :: scheme
@@ -225,7 +225,7 @@ contains
          if (with_c) call look_at_pressure(gp, 2, k%c0, k%c1, k%c_dot, k%grad_c)
       end subroutine look
 
-      !> A pressure before and after, its rate and its gradient at the level of values.
+      !> Evaluates a pressure before and after, its rate and its gradient at the level of values.
       subroutine look_at_pressure(gp, which, before, after, p_dot, gradient)
          type(gauss_t), intent(in) :: gp
          integer, intent(in) :: which   !< 1: p_w, 2: p_c.
@@ -300,7 +300,7 @@ contains
       if (with_tangent) call matrix_of(sums%k, n_fields, n_p, out%k)
    end subroutine add_element
 
-   !> A body in flight: its inertia is its weight and nothing is left that a residual could be small against.
+   !> Scales a body in flight: its inertia is its weight and nothing is left that a residual could be small against.
    pure subroutine add_flight_scale(domain, region, k, scheme, after, gp, stretch)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
@@ -321,7 +321,7 @@ contains
       end do
    end subroutine add_flight_scale
 
-   !> Change of the total stress and of the weight at a point in a step; inertia, sources and damping count whole.
+   !> Finds how total stress and weight change at a point in a step; inertia, sources and damping count whole.
    pure function change_of(domain, region, k, gravity0, before, response) result(change)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region

@@ -26,7 +26,7 @@ module element_sums
       real(wp), dimension(NODES) :: m, dm_r, dm_z       !< Rows of the pressures.
    end type rows_t
 contains
-   !> The rows of B at a point, times its weight.
+   !> Multiplies the rows of B at a point by its weight.
    pure type(rows_t) function weighted_rows(gp) result(b)
       type(gauss_t), intent(in) :: gp
 
@@ -39,7 +39,7 @@ contains
       b%dm_z = gp%weight*gp%dm(:, 2)
    end function weighted_rows
 
-   !> r = r + weight B^T response in the rows of the displacements. Units of response: those of point_response.
+   !> Adds weight B^T response to the rows of the displacements; units of response are those of point_response.
    pure subroutine add_forces(b, response, r)
       type(rows_t), intent(in) :: b
       real(wp), intent(in) :: response(PLACES)
@@ -49,7 +49,7 @@ contains
       r(:, U_Z) = r(:, U_Z) + (b%d_z*response(ZZ) + b%d_r*response(RZ) + b%n*response(U + 2))
    end subroutine add_forces
 
-   !> r = r + weight B^T response in the rows of the pressures.
+   !> Adds weight B^T response to the rows of the pressures.
    pure subroutine add_balances(b, fields, response, r)
       type(rows_t), intent(in) :: b
       integer, intent(in) :: fields           !< Number of fields of the element: 2, 3 or 4.
@@ -62,7 +62,7 @@ contains
       r(:, SUCTION) = r(:, SUCTION) + (b%m*response(PC) + b%dm_r*response(GA + 1) + b%dm_z*response(GA + 2))
    end subroutine add_balances
 
-   !> k = k + weight B^T tangent B. Of the strain a force per volume and the balances know the change of volume alone,
+   !> Adds weight B^T tangent B to k. Of the strain a force per volume and the balances know the change of volume alone,
    !> and a gradient of pressure changes the fluxes alone (docs/theory/host.md section 3.3): nothing goes to the rest.
    pure subroutine add_tangent(gp, b, fields, tangent, k)
       type(gauss_t), intent(in) :: gp
@@ -89,8 +89,8 @@ contains
       if (fields >= SUCTION) call add_tangent_of_pressure(gp, b, fields, PC, GA, tangent, k(:, :, :, SUCTION))
    end subroutine add_tangent
 
-   !> The rows of the pressures in the columns of the displacements: by the change of volume, and by the acceleration
-   !> where it drives seepage. What these do to the balances is the same at every node.
+   !> Adds the rows of the pressures in the columns of the displacements: by the change of volume, and by the
+   !> acceleration where it drives seepage. What these do to the balances is the same at every node.
    pure subroutine add_balances_of_displacements(gp, b, fields, tangent, k)
       type(gauss_t), intent(in) :: gp
       type(rows_t), intent(in) :: b
@@ -114,7 +114,7 @@ contains
       end do
    end subroutine add_balances_of_displacements
 
-   !> The columns of a pressure. Its gradient changes no force: what its value does to them is the same at every node.
+   !> Adds the columns of a pressure. Its gradient changes no force: what its value does to them is alike at all nodes.
    pure subroutine add_tangent_of_pressure(gp, b, fields, value, gradient, tangent, k)
       type(gauss_t), intent(in) :: gp
       type(rows_t), intent(in) :: b
@@ -136,8 +136,8 @@ contains
       end do
    end subroutine add_tangent_of_pressure
 
-   !> The residual in the order of the element's unknowns: displacements node by node, then the n_p values of a pressure
-   !> after those of the other.
+   !> Puts the residual in the order of the element's unknowns: displacements node by node, then the n_p values of a
+   !> pressure after those of the other.
    pure subroutine residual_of(r, fields, n_p, ordered)
       real(wp), intent(in) :: r(NODES, 4)
       integer, intent(in) :: fields, n_p
@@ -155,7 +155,7 @@ contains
       end do
    end subroutine residual_of
 
-   !> The matrix in that order.
+   !> Puts the matrix in that order.
    pure subroutine matrix_of(k, fields, n_p, ordered)
       real(wp), intent(in) :: k(NODES, 4, NODES, 4)
       integer, intent(in) :: fields, n_p

@@ -45,7 +45,7 @@ module equation_assembly
       real(wp) :: material = 0.0_wp                  !< Share of the material in the time of the last pass.
    end type assembly_t
 contains
-   !> Room for residual, tangent and scales of a domain; the pattern must be that of its elements.
+   !> Makes room for residual, tangent and scales of a domain; the pattern must be that of its elements.
    subroutine make_assembly(domain, dofs, pattern, assembly)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
@@ -72,9 +72,9 @@ contains
       assembly%slopes%known = .false.
    end subroutine follow_slopes_first
 
-   !> Internal forces of the state `new`; loads are not in it. The next pass asks the material, whatever this one did.
-   !> docs/theory/host.md sections 3.3 and 3.4. Residual, scale, floor: [kN, m3/s]. Where a point fails, bad_element > 0
-   !> with bad_point and the report `bad` of the first; the sums are then those of the pass before.
+   !> Sums the internal forces of the state `new`; loads are not in it. The next pass asks the material, whatever this
+   !> one did. docs/theory/host.md sections 3.3 and 3.4. Residual, scale, floor: [kN, m3/s]. Where a point fails,
+   !> bad_element > 0 with bad_point and the report `bad` of the first; the sums are then those of the pass before.
    subroutine assemble(domain, dofs, pattern, scheme, old, new, with_tangent, assembly)
       type(domain_t), intent(in) :: domain
       type(dofs_t), intent(in) :: dofs
@@ -122,7 +122,7 @@ contains
       ! The threads share the loop evenly.
       assembly%material = min(1.0_wp, seconds/threads/max(clock() - t0, tiny(1.0_wp)))
    contains
-      !> Elements from .. to, those of one region together.
+      !> Computes the elements from .. to, those of one region together.
       subroutine compute_elements(from, to, block, out, seconds, rates)
          integer, intent(in) :: from, to
          type(element_block_t), intent(inout) :: block
@@ -189,7 +189,7 @@ contains
          assembly%bad = block%report
       end subroutine find_failed_point
 
-      !> An element to its places in the sums.
+      !> Gives an element to its places in the sums.
       subroutine give(e, out)
          integer, intent(in) :: e
          type(element_t), intent(inout) :: out

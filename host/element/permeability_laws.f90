@@ -32,8 +32,8 @@ module permeability_laws
       real(wp) :: dw, da   !< Slopes of k_rw, k_ra against S_w [-].
    end type relative_t
 contains
-   !> Relative permeabilities of water and air [-] and their slopes at a degree of saturation [-]. docs/theory/host.md
-   !> section 2.6; LAW_MUALEM: Mualem (1976) with van Genuchten (1980). Where a limit of S_e or the floor holds the
+   !> Finds relative permeabilities of water and air and their slopes at a degree of saturation [-]. docs/theory/host.md
+   !> section 2.6; LAW_MUALEM is by Mualem (1976) and van Genuchten (1980). Where a limit of S_e or the floor holds the
    !> slope is 0.
    pure function relative_permeability(law, s_w) result(k)
       type(permeability_t), intent(in) :: law
@@ -75,7 +75,7 @@ contains
       call keep_above(law%floor, k%a, k%da)
    end function relative_permeability
 
-   !> x to a power, by multiplications where the exponent is a small whole number, as those of the defaults are.
+   !> Raises x to a power, by multiplications where the exponent is a small whole number, as those of the defaults are.
    pure real(wp) function power(x, exponent)
       real(wp), intent(in) :: x, exponent
       integer :: n

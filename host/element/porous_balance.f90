@@ -43,10 +43,10 @@ module porous_balance
       real(wp) :: e, s, s_rate   !< Void ratio, degree of saturation and its rate [1/s].
    end type point_state_t
 contains
-   !> Response of a point of a region, its tangent where it is asked for, and its state at the end of the step.
-   !> docs/theory/host.md sections 2, 3.3 and 3.4. response: stress [kPa], force per volume [kN/m3], sources of volume
-   !> [1/s], fluxes [m/s]. In static steps, in drained and in dry regions the places of the fluids are 0; pressures act
-   !> in the stress in any case.
+   !> Finds the response of a point of a region, its tangent where it is asked for, and its state at the end of the
+   !> step. docs/theory/host.md sections 2, 3.3 and 3.4. response: stress [kPa], force per volume [kN/m3], sources of
+   !> volume [1/s], fluxes [m/s]. In static steps, in drained and in dry regions the places of the fluids are 0;
+   !> pressures act in the stress in any case.
    subroutine point_response(domain, region, scheme, k, material, point, old, new, with_tangent, response, tangent, &
                              drift)
       type(domain_t), intent(in) :: domain
@@ -82,8 +82,8 @@ contains
       if (region%with_c) call add_air()
       response(PW) = response(PW) - k%source(3)
    contains
-      !> Void ratio and saturation at the end of the step, and the mixture at its levels: saturated where the scene has
-      !> no suction.
+      !> Sets void ratio and saturation at the end of the step, and the mixture at its levels: saturated where the scene
+      !> has no suction.
       subroutine fill_pores()
          new = point_state_t(material%stress(:, point), material%void_ratio(point), 1.0_wp, 0.0_wp)
          n1 = new%e/(1 + new%e)
@@ -130,7 +130,7 @@ contains
          rho_a = d_rho_a*k_a
       end subroutine fill_with_air
 
-      !> Momentum of the mixture: total stress, inertia, weight.
+      !> Adds what is in the momentum of the mixture: total stress, inertia, weight.
       subroutine add_momentum()
          real(wp) :: rho, rho_n, rho_s, accel(2), l_s, inertia
          logical :: resists_rate
@@ -176,7 +176,7 @@ contains
          tangent(U + 1:U + 2, PW) = accel*n*(1 - s)*d_rho_a*l
       end subroutine add_momentum
 
-      !> Water, in the sum of the balances.
+      !> Adds the water, in the sum of the balances.
       subroutine add_water()
          real(wp) :: drive(2), body(2), kappa, d_kappa, inverse
 
@@ -202,7 +202,7 @@ contains
          tangent(GW + 2, GW + 2) = kappa*l
       end subroutine add_water
 
-      !> Air, in both sums: free, and dissolved in the water, with which it flows.
+      !> Adds the air, in both sums: free, and dissolved in the water, with which it flows.
       subroutine add_air()
          real(wp) :: drive(2), body(2), dissolved(2), kappa, d_kappa, a_dot, room, stored, d_stored, filling
          integer :: i
@@ -251,7 +251,7 @@ contains
          end associate
       end subroutine add_air
 
-      !> Slopes of a flux against saturation and displacement.
+      !> Adds the slopes of a flux by saturation and displacement.
       subroutine add_flux_slopes(place, kappa, d_kappa, density, drive)
          integer, intent(in) :: place
          real(wp), intent(in) :: kappa, d_kappa, density, drive(2)
@@ -265,7 +265,7 @@ contains
       end subroutine add_flux_slopes
    end subroutine point_response
 
-   !> Acceleration that drives seepage beside the gradient: weight, and inertia if the scene wants it [m/s2].
+   !> Finds the acceleration that drives seepage beside the gradient: weight, and inertia if the scene wants it [m/s2].
    pure function body_force(domain, k) result(b)
       type(domain_t), intent(in) :: domain
       type(kinematics_t), intent(in) :: k

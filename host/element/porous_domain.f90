@@ -138,7 +138,7 @@ module porous_domain
       real(wp) :: n, s        !< Porosity, degree of saturation [-].
    end type means_t
 contains
-   !> Geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault
+   !> Computes the geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault
    !> EXIT_ELEMENT: an element is inverted, or an axisymmetric mesh has a point at r <= 0.
    subroutine prepare_domain(domain, fault)
       type(domain_t), intent(inout) :: domain
@@ -201,7 +201,7 @@ contains
       end do
    end subroutine prepare_domain
 
-   !> Integration points of an edge, which has the body on its left. docs/theory/host.md section 3.1.
+   !> Makes the integration points of an edge, which has the body on its left. docs/theory/host.md section 3.1.
    pure function points_of_edge(domain, edge) result(points)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: edge(3)   !< Nodes: start, end, middle.
@@ -243,7 +243,7 @@ contains
       end do
    end subroutine place_pressures
 
-   !> p_w and p_c at a quadrature point [kPa]. docs/theory/host.md section 3.5.
+   !> Finds p_w and p_c at a quadrature point [kPa]. docs/theory/host.md section 3.5.
    pure function pressures_at(domain, element, point, carried) result(p)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element, point   !< Numbers; the point within its element.
@@ -260,8 +260,8 @@ contains
          p = p + given_pressures_at(domain, element, point)
    end function pressures_at
 
-   !> Part of p_w and p_c at a point that is given: all of it where drained, in undrained elements what differs from
-   !> their mean, else nothing [kPa]. docs/theory/host.md section 3.5.
+   !> Finds the part of p_w and p_c at a point that is given: all of it where drained, in undrained elements what
+   !> differs from their mean, else nothing [kPa]. docs/theory/host.md section 3.5.
    pure function given_pressures_at(domain, element, point) result(p)
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element, point   !< Numbers; the point within its element.
@@ -277,7 +277,7 @@ contains
       end select
    end function given_pressures_at
 
-   !> A state of the right size, everything zero and saturated. Void ratios are those of the regions.
+   !> Makes a state of the right size, where everything is zero and saturated. Void ratios are those of the regions.
    function new_state_of(domain) result(state)
       type(domain_t), intent(in) :: domain
       type(model_state_t) :: state
@@ -299,8 +299,8 @@ contains
       end do
    end function new_state_of
 
-   !> Density of soil with its fluids at a porosity and a degree of saturation [Mg/m3]. docs/theory/host.md section 2.1;
-   !> the density of the air is that of the fluids, whatever its pressure.
+   !> Finds the density of soil with its fluids at a porosity and a degree of saturation [Mg/m3]. docs/theory/host.md
+   !> section 2.1; the density of the air is that of the fluids, whatever its pressure.
    pure real(wp) function mixture_density(domain, region, n, s)
       type(domain_t), intent(in) :: domain
       type(region_t), intent(in) :: region
@@ -312,7 +312,7 @@ contains
       if (region%with_c) mixture_density = mixture_density + n*(1 - s)*domain%fluids%rho_a
    end function mixture_density
 
-   !> Strain of displacements of the nodes, or rate of velocities, at a point: rr, zz, tt and engineering shear rz.
+   !> Finds the strain of displacements of nodes, or its rate from velocities: rr, zz, tt and engineering shear rz.
    pure function strain_of(gp, u) result(strain)
       type(gauss_t), intent(in) :: gp
       real(wp), intent(in) :: u(2, 6)   !< [m] or [m/s]
@@ -343,7 +343,7 @@ contains
       if (allocated(state%present)) is_present = state%present(element)
    end function is_present
 
-   !> Law of a region in the step that ends with a state: that of the step where laws change with time.
+   !> Finds the law of a region in the step that ends with a state: that of the step where laws change with time.
    function law_of(domain, state, region) result(law)
       type(domain_t), intent(in), target :: domain
       type(model_state_t), intent(in), target :: state
@@ -354,7 +354,7 @@ contains
       if (allocated(state%laws)) law => state%laws(region)%law
    end function law_of
 
-   !> Gravity on an element, towards -z: that of new ground grows over its first stage [m/s2].
+   !> Finds the gravity on an element, towards -z: that of new ground grows over its first stage [m/s2].
    pure real(wp) function gravity_on(state, element) result(gravity)
       type(model_state_t), intent(in) :: state
       integer, intent(in) :: element

@@ -14,7 +14,7 @@ module sparsity_pattern
       integer, allocatable :: place(:)    !< The entry that every one of these adds to.
    end type pattern_t
 contains
-   !> Pattern of elements given by their unknowns; `extra`: further pairs of unknowns that meet (contact).
+   !> Makes the pattern of elements given by their unknowns; `extra`: further pairs of unknowns that meet (contact).
    subroutine make_pattern(n, element, extra, pattern)
       integer, intent(in) :: n   !< Number of unknowns.
       integer, intent(in) :: element(:, :)   !< (m, elements) 0 behind the unknowns of an element.
@@ -103,7 +103,7 @@ contains
       end do
    end subroutine invert
 
-   !> Insertion sort: rows are short.
+   !> Sorts by insertion, since rows are short.
    pure subroutine sort(values)
       integer, intent(inout) :: values(:)
       integer :: i, j, value
@@ -118,7 +118,7 @@ contains
       end do
    end subroutine sort
 
-   !> Place of entry (i, j), 0 if the pattern has none. From 1, in pattern%col and in the values of the matrix.
+   !> Finds entry (i, j) in pattern%col and in the values of the matrix, counted from 1; 0 if the pattern has none.
    pure integer function entry_of(pattern, i, j) result(place)
       type(pattern_t), intent(in) :: pattern
       integer, intent(in) :: i, j

@@ -41,7 +41,7 @@ contains
       end do
    end subroutine replace_soft_tangents
 
-   !> Mean stress per volumetric strain, times nine [kPa].
+   !> Finds the mean stress per volumetric strain, times nine [kPa].
    pure real(wp) function volume_stiffness(tangent)
       real(wp), intent(in) :: tangent(6, 6)
 

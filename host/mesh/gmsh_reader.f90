@@ -99,7 +99,7 @@ contains
       if (g%fault%code == 0) call raise(g%fault, EXIT_MESH, at_line(g%file, g%line)//what//'; '//remedy//'.')
    end subroutine wrong
 
-   !> The plane of a mesh: x, y, or, where y does not vary and z does, x, z.
+   !> Finds the plane of a mesh: x, y, or, where y does not vary and z does, x, z.
    subroutine find_plane(g, mesh)
       type(reader_t), intent(inout) :: g
       type(mesh_t), intent(inout) :: mesh
@@ -128,7 +128,7 @@ contains
       if (status /= 0) call wrong(g, 'the file ends early')
    end subroutine next
 
-   !> The integers of the next line.
+   !> Reads the integers of the next line.
    subroutine integers(g, values)
       type(reader_t), intent(inout) :: g
       integer, intent(out) :: values(:)
@@ -148,8 +148,8 @@ contains
       only_numbers = verify(trim(g%text), '0123456789+-.eEdD '//achar(9)//achar(13)) == 0
    end function only_numbers
 
-   !> A number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so that
-   !> a damaged number cannot ask for all memory.
+   !> Reads a number of lines, or a largest tag, that the file announces: not below 0, and no more than it has bytes, so
+   !> that a damaged number cannot ask for all memory.
    subroutine check_announced(g, what, number)
       type(reader_t), intent(inout) :: g
       character(*), intent(in) :: what
@@ -382,8 +382,8 @@ contains
       if (a(1)*b(2) - a(2)*b(1) < 0.0_wp) turned = nodes([1, 3, 2, 6, 5, 4])
    end function counter_clockwise
 
-   !> Edges of a group, each once, with their triangle on the left, of two the first one. Curves that lie on each other
-   !> have the same edges.
+   !> Lists the edges of a group once, with their triangle on the left, of two the first one. Curves that lie on each
+   !> other have the same edges.
    function oriented(mesh, edges) result(once)
       type(mesh_t), intent(in) :: mesh
       integer, intent(in) :: edges(:, :)

@@ -39,8 +39,8 @@ contains
       end do
    end function graded_axis
 
-   !> Mesh of a rectangle from breaks [m], cells between two breaks and the ratio of neighbouring cells, along r and z.
-   !> Extents as of graded_axis.
+   !> Meshes a rectangle by breaks [m], cells between two breaks and the ratio of neighbouring cells, along r and z.
+   !> Extents are as those of graded_axis.
    subroutine graded_mesh(r_breaks, r_cells, r_ratio, z_breaks, z_cells, z_ratio, mesh)
       real(wp), intent(in) :: r_breaks(:), r_ratio(:), z_breaks(:), z_ratio(:)
       integer, intent(in) :: r_cells(:), z_cells(:)     !< (pieces along r, along z)
@@ -90,7 +90,7 @@ contains
          node = j*(2*nr + 1) + i + 1
       end function node
 
-      !> Coordinate number i of an axis with its middles, from 0.
+      !> Returns coordinate number i of an axis with its middles, counted from 0.
       pure real(wp) function middle(ends, i)
          real(wp), intent(in) :: ends(:)
          integer, intent(in) :: i
@@ -148,7 +148,7 @@ contains
          end do
       end subroutine add_interfaces
 
-      !> A boundary and its pieces, whose numbers stand before the end of its name.
+      !> Adds a boundary and its pieces, whose numbers stand before the end of its name.
       subroutine add_side(name, ending, edges, piece)
          character(*), intent(in) :: name, ending
          integer, intent(in) :: edges(:, :), piece(:)

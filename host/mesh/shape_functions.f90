@@ -10,8 +10,8 @@ module shape_functions
    !> Numbers of points for which there is a rule, exact to degree 2, 4, 5, 6.
    integer, parameter :: RULES(4) = [3, 6, 7, 12]
 contains
-   !> The six functions at (xi, eta) of the unit triangle, and their derivatives. Order of the nodes as above; dn(1, :)
-   !> by xi, dn(2, :) by eta.
+   !> Evaluates the six functions at (xi, eta) of the unit triangle, and their derivatives. The nodes are ordered as
+   !> above; dn(1, :) is by xi, dn(2, :) by eta.
    pure subroutine quadratic(xi, eta, n, dn)
       real(wp), intent(in) :: xi, eta
       real(wp), intent(out) :: n(6), dn(2, 6)
@@ -23,7 +23,7 @@ contains
       dn(2, :) = [1 - 4*l, 0.0_wp, 4*eta - 1, -4*xi, 4*xi, 4*(l - eta)]
    end subroutine quadratic
 
-   !> The three linear functions. As `quadratic`, of the vertices.
+   !> Evaluates the three linear functions of the vertices, as `quadratic` does those of six nodes.
    pure subroutine linear(xi, eta, n, dn)
       real(wp), intent(in) :: xi, eta
       real(wp), intent(out) :: n(3), dn(2, 3)
@@ -33,7 +33,7 @@ contains
       dn(2, :) = [-1.0_wp, 0.0_wp, 1.0_wp]
    end subroutine linear
 
-   !> An edge, s from -1 to 1. Start, end, middle; dn: by s.
+   !> Evaluates the functions of an edge, start, end, middle, where s goes from -1 to 1; dn is by s.
    pure subroutine edge_quadratic(s, n, dn)
       real(wp), intent(in) :: s
       real(wp), intent(out) :: n(3), dn(3)
@@ -42,7 +42,7 @@ contains
       dn = [s - 0.5_wp, s + 0.5_wp, -2*s]
    end subroutine edge_quadratic
 
-   !> Points (xi, eta) and weights, which add up to the area 1/2. Strang & Fix (1973), Dunavant (1985).
+   !> Gives points (xi, eta) and weights, which add up to the area 1/2, by Strang & Fix (1973) and Dunavant (1985).
    !> docs/theory/host.md section 3.1.
    subroutine triangle_rule(count, points, weights)
       integer, intent(in) :: count   !< One of RULES.
@@ -69,7 +69,7 @@ contains
          call six(0.053145049844816947353_wp, 0.31035245103378440542_wp, 0.082851075618373575194_wp)
       end select
    contains
-      !> The three points with two barycentric coordinates equal to a.
+      !> Adds the three points with two barycentric coordinates equal to a.
       subroutine add_three_points(a, weight)
          real(wp), intent(in) :: a, weight
 
@@ -80,7 +80,7 @@ contains
          used = used + 3
       end subroutine add_three_points
 
-      !> The six permutations of (a, b, 1 - a - b).
+      !> Adds the six permutations of (a, b, 1 - a - b).
       subroutine six(a, b, weight)
          real(wp), intent(in) :: a, b, weight
          real(wp) :: c
@@ -92,7 +92,7 @@ contains
       end subroutine six
    end subroutine triangle_rule
 
-   !> Gauss-Legendre with three points on (-1, 1), exact to degree 5.
+   !> Gives the three points of Gauss and Legendre on (-1, 1), exact to degree 5.
    pure subroutine edge_rule(points, weights)
       real(wp), intent(out) :: points(3), weights(3)
 

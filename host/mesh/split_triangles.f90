@@ -13,7 +13,7 @@ module split_triangles
    !> Places of the three nodes inside a triangle: middles of the sides of the innermost of the four.
    real(wp), parameter :: INNER(2, 3) = reshape([0.25_wp, 0.25_wp, 0.5_wp, 0.25_wp, 0.25_wp, 0.5_wp], [2, 3])
 contains
-   !> Four triangles for one, and two edges for one. Raises no fault.
+   !> Makes four triangles of one, and two edges of one. Raises no fault.
    subroutine split_mesh(mesh, finer)
       type(mesh_t), intent(in) :: mesh
       type(mesh_t), intent(out) :: finer
@@ -47,7 +47,7 @@ contains
          call split_group(k)
       end do
    contains
-      !> The nodes at a quarter and at three quarters of a side, made when the side is seen first.
+      !> Finds the nodes at a quarter and at three quarters of a side, made when the side is seen first.
       subroutine find_quarters(side, nodes)
          integer, intent(in) :: side(3)
          integer, intent(out) :: nodes(2)
@@ -62,7 +62,7 @@ contains
          if (side(1) > side(2)) nodes = nodes([2, 1])
       end subroutine find_quarters
 
-      !> Place on a side a quarter of the way from its first node.
+      !> Finds the place on a side a quarter of the way from its first node.
       pure function quarter_of(first, middle, last) result(place)
          integer, intent(in) :: first, middle, last
          real(wp) :: place(2)

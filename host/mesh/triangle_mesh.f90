@@ -22,7 +22,7 @@ module triangle_mesh
       type(group_of_t), allocatable :: groups(:)
    end type mesh_t
 contains
-   !> Place of a group, 0 if there is none of that name.
+   !> Finds the place of a group, 0 if there is none of that name.
    pure integer function find_group(mesh, name) result(place)
       type(mesh_t), intent(in) :: mesh
       character(*), intent(in) :: name
@@ -55,7 +55,7 @@ contains
       mesh%groups = [mesh%groups, group]
    end subroutine add_group
 
-   !> The three sides of every triangle, as edges that have it on their left. (3, 3 elements)
+   !> Lists the three sides of every triangle, as edges that have it on their left. (3, 3 elements)
    pure function sides_of(t6) result(sides)
       integer, intent(in) :: t6(:, :)   !< (6, elements)
       integer :: sides(3, 3*size(t6, 2))

@@ -123,7 +123,7 @@ contains
       end subroutine add
    end subroutine pieces_above
 
-   !> Lowest and highest point of a triangle on a vertical line that meets it [m].
+   !> Finds the lowest and highest point of a triangle on a vertical line that meets it [m].
    pure function heights_at(corners, r) result(z)
       real(wp), intent(in) :: corners(2, 3), r   !< [m]
       real(wp) :: z(2), at

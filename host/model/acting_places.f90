@@ -11,7 +11,8 @@ module acting_places
    use triangle_mesh, only: group_of_t, triangles_beside
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, ground_of, nodes_of_ground, given_in, are_in, share_an_edge, check_actions
+   public :: facing_edges, acting_stages, ground_of, nodes_of_ground, given_in, are_in, share_an_edge, check_actions, &
+             location_of
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
@@ -54,7 +55,7 @@ contains
       acting = action%in_stage .and. (model%stages%has_inertia .or. .not. action%damps)
    end function acting_stages
 
-   !> On which sides of the edges of a group a stage has ground. (edges)
+   !> Finds on which sides of the edges of a group a stage has ground. (edges)
    pure function sides_with_ground(model, group, number) result(sides)
       type(model_t), intent(in) :: model
       integer, intent(in) :: group, number   !< Of the mesh; of the stage.
@@ -139,7 +140,7 @@ contains
       end function misplaced
    end subroutine check_actions
 
-   !> Nodes of elements that a stage has, and of plates.
+   !> Marks the nodes of elements that a stage has, and of plates.
    pure function nodes_of_ground(model, number) result(there)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number   !< Of the stage.
@@ -154,7 +155,7 @@ contains
       if (any(there)) there(model%domain%bodies) = .true.
    end function nodes_of_ground
 
-   !> Nodes of a group. (nodes)
+   !> Marks the nodes of a group. (nodes)
    pure function are_in(model, group) result(inside)
       type(model_t), intent(in) :: model
       integer, intent(in) :: group   !< Of the mesh.
@@ -175,8 +176,8 @@ contains
       end associate
    end function share_an_edge
 
-   !> What a &fix gives nodes in a stage, or from its start to its end: a limit gives nothing throughout. Rotations of
-   !> bodies stand at PRESCRIBED_OF_BODY. (PRESCRIBED_OF_BODY, nodes)
+   !> Marks what a &fix gives nodes in a stage, or from its start to its end: a limit gives nothing throughout.
+   !> Rotations of bodies stand at PRESCRIBED_OF_BODY. (PRESCRIBED_OF_BODY, nodes)
    pure function given_in(model, number, throughout) result(given)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number                !< Of the stage.
@@ -201,4 +202,23 @@ contains
          end do
       end associate
    end function given_in
+
+   !> Where a node is: the plate that it stands for, or an element and the point [m].
+   function location_of(model, node) result(text)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: node
+      character(:), allocatable :: text
+      integer :: e, i
+
+      associate (mesh => model%domain%mesh)
+         i = findloc(model%plates%node, node, dim=1)
+         if (i > 0) then
+            text = 'plate '//trim(model%plates(i)%name)
+         else
+            e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
+            text = 'node '//whole(node)//' of element '//whole(e)//', ('//short(mesh%x(1, node))//', '// &
+                   short(mesh%x(2, node))//') m'
+         end if
+      end associate
+   end function location_of
 end module acting_places

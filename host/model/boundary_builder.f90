@@ -22,9 +22,10 @@ module boundary_builder
 
    real(wp), parameter :: BIG = UNBOUNDED, TINY_ = 1.0e-30_wp, ZERO = 0.0_wp, ONE = 1.0_wp
 contains
-   !> &plate, before what acts on it: one with a face of its own becomes a node of the mesh, and each becomes a group of
-   !> it. docs/theory/host.md section 7.3. Fault EXIT_INPUT: keys that contradict each other. EXIT_GROUP: the name is
-   !> that of a group of the mesh, its boundary or history does not exist, or its boundary shares a node with another.
+   !> Builds a &plate before what acts on it: one with a face of its own becomes a node of the mesh, each becomes a
+   !> group of it. docs/theory/host.md section 7.3. Fault EXIT_INPUT: keys that contradict each other. EXIT_GROUP: the
+   !> name is that of a group of the mesh, its boundary or history does not exist, or its boundary shares a node with
+   !> another.
    subroutine build_plate(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -120,7 +121,7 @@ contains
       end do
    end subroutine check_apart
 
-   !> A node of its own, and a group of it, if it is to have a name.
+   !> Adds a node for a body, and a group of it, if it is to have a name.
    subroutine add_body(model, x, node, name)
       type(model_t), intent(inout) :: model
       real(wp), intent(in) :: x(2)   !< [m]
@@ -136,7 +137,7 @@ contains
       model%domain%bodies = [model%domain%bodies, node]
    end subroutine add_body
 
-   !> &initial. Fault EXIT_INPUT: keys that contradict each other; EXIT_GROUP: its group does not exist.
+   !> Builds an &initial. Fault EXIT_INPUT: keys that contradict each other; EXIT_GROUP: its group does not exist.
    subroutine build_initial(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -198,8 +199,8 @@ contains
       model%initials = [model%initials, initial]
    end subroutine build_initial
 
-   !> &fix. Fault EXIT_GROUP: its group or history does not exist. EXIT_INPUT: an acceleration of a pressure, or one
-   !> that has no history or is held; a field that the scene lacks.
+   !> Builds a &fix. Fault EXIT_GROUP: its group or history does not exist. EXIT_INPUT: an acceleration of a pressure,
+   !> or one that has no history or is held; a field that the scene lacks.
    subroutine build_fix(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -243,8 +244,8 @@ contains
       model%actions = [model%actions, fix%action_t]
    end subroutine build_fix
 
-   !> &load. Fault EXIT_GROUP: its group or history does not exist, or the group lacks edges. EXIT_INPUT: an inflow of a
-   !> fluid that the scene lacks.
+   !> Builds a &load. Fault EXIT_GROUP: its group or history does not exist, or the group lacks edges. EXIT_INPUT: an
+   !> inflow of a fluid that the scene lacks.
    subroutine build_load(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -298,8 +299,8 @@ contains
       if (fault%code == 0) one%amplitude = history_named(history, model%amplitudes%name, place_of(one), fault)
    end subroutine find_places
 
-   !> &contact. Fault EXIT_GROUP: its boundaries do not exist, are one, or have no edges. EXIT_INPUT: it acts in a stage
-   !> that zeroes displacements.
+   !> Builds a &contact. Fault EXIT_GROUP: its boundaries do not exist, are one, or have no edges. EXIT_INPUT: it acts
+   !> in a stage that zeroes displacements.
    subroutine build_contact(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -360,8 +361,8 @@ contains
       model%actions = [model%actions, contact%action_t]
    end subroutine build_contact
 
-   !> &tie: pairs of nodes at equal heights. Fault EXIT_GROUP: a boundary does not exist, or the nodes of both are not
-   !> at the same heights.
+   !> Builds a &tie, pairs of nodes at equal heights. Fault EXIT_GROUP: a boundary does not exist, or the nodes of both
+   !> are not at the same heights.
    subroutine build_tie(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model

@@ -17,7 +17,7 @@ module boundary_conditions
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
 contains
-   !> Nothing prescribed, nothing loaded; plates have their mass. Extents: see constraint_t.
+   !> Makes a constraint that prescribes and loads nothing; plates have their mass. Extents: see constraint_t.
    function new_constraint(model) result(constraint)
       type(model_t), intent(in) :: model
       type(constraint_t) :: constraint
@@ -41,8 +41,8 @@ contains
       end do
    end function new_constraint
 
-   !> Prescribed values at the end of a step; some unknowns are held at what they were at the start of the stage.
-   !> docs/theory/host.md sections 3.5 and 7.1. Accelerations: see follow_accelerations.
+   !> Sets the prescribed values at the end of a step; some unknowns are held at what they were at the start of the
+   !> stage. docs/theory/host.md sections 3.5 and 7.1. Accelerations: see follow_accelerations.
    subroutine constrain_step(time, problem)
       real(wp), intent(in) :: time   !< At its end [s].
       type(problem_t), intent(inout) :: problem
@@ -72,7 +72,7 @@ contains
       end associate
    end subroutine constrain_step
 
-   !> What follows from the prescribed values of supports and terms.
+   !> Completes what follows from the prescribed values of supports and terms.
    subroutine complete_constraint(problem)
       type(problem_t), intent(inout) :: problem
       integer :: i, node
@@ -146,7 +146,7 @@ contains
       end do
    end subroutine starting_accelerations
 
-   !> Of a node at a moment of the scheme [m/s2].
+   !> Prescribes the acceleration of a node at the moment that the scheme asks for [m/s2].
    pure real(wp) function acceleration_at(model, fix, node, scheme, time) result(a)
       type(model_t), intent(in) :: model
       type(fix_t), intent(in) :: fix
@@ -170,8 +170,8 @@ contains
              time <= fix%until + rounding_of_time
    end function acts
 
-   !> Number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every node; 0:
-   !> none. The last one counts.
+   !> Finds the number of the &fix that prescribes every unknown, and of that which prescribes the air pressure of every
+   !> node; 0: none. The last one counts.
    subroutine prescribing_fixes(problem, time, by, air_by)
       type(problem_t), intent(in) :: problem
       real(wp), intent(in) :: time   !< At the end of a step [s].
@@ -195,8 +195,8 @@ contains
       end do
    end subroutine prescribing_fixes
 
-   !> Forces that hold displacements, group by group [kN]: an unknown's belongs to the group of the &fix that prescribes
-   !> it. docs/theory/host.md section 9.1.
+   !> Sums the forces that hold displacements, group by group [kN]: an unknown's belongs to the group of the &fix that
+   !> prescribes it. docs/theory/host.md section 9.1.
    pure function forces_of_supports(model, by, reaction) result(force)
       type(model_t), intent(in) :: model
       integer, intent(in) :: by(:)          !< (unknowns) Of prescribing_fixes.
@@ -213,8 +213,8 @@ contains
       end do
    end function forces_of_supports
 
-   !> Loads of a stage at a time. (unknowns) Forces of loads and plates [kN], inflows [m3/s]: docs/theory/host.md
-   !> sections 7.2 and 7.3.
+   !> Sums the loads of a stage at a time. (unknowns) Forces of loads and plates [kN], inflows [m3/s]:
+   !> docs/theory/host.md sections 7.2 and 7.3.
    function load_at(model, stage, time) result(load)
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage   !< Number of the stage.
@@ -237,7 +237,7 @@ contains
       end do
    end function load_at
 
-   !> Forces [kN] or inflows [m3/s] of a load at a factor of its history. (unknowns)
+   !> Scales the forces [kN] or inflows [m3/s] of a load by a factor of its history. (unknowns)
    pure function force_of(load, factor) result(force)
       type(load_t), intent(in) :: load
       real(wp), intent(in) :: factor   !< [-]
@@ -246,8 +246,8 @@ contains
       force = factor*load%vector
    end function force_of
 
-   !> Loads on the coordinates of a plate, its weight among them: first the force upwards [kN]. docs/theory/host.md
-   !> section 7.3.
+   !> Sums the loads on the coordinates of a plate, its weight among them: first the force upwards [kN].
+   !> docs/theory/host.md section 7.3.
    pure function plate_loads(model, plate, time) result(loads)
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate

@@ -28,7 +28,8 @@ contains
       call look_at_places(model)
    end subroutine warn_of_boundaries
 
-   !> Two that prescribe an unknown of a stage differently: the later one applies; and p_w, p_c and p_a all at once.
+   !> Warns of two &fix that prescribe an unknown of a stage differently: the later one applies; and p_w, p_c and p_a
+   !> all at once.
    subroutine look_at_fixes(model)
       type(model_t), intent(in) :: model
       integer, allocatable :: by(:, :)

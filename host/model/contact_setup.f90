@@ -62,7 +62,7 @@ contains
       call move_alloc(built, contacts)
    end subroutine prepare_contacts
 
-   !> A plate as contacts know it.
+   !> Describes a plate as contacts know it.
    type(plate_link_t) function link_of(plate) result(link)
       type(plate_t), intent(in) :: plate
 
@@ -93,7 +93,7 @@ contains
          end associate
       end do
    contains
-      !> Of the lowest edges of a face that look down [m2].
+      !> Sums the area of the lowest edges of a face that look down [m2].
       pure real(wp) function area_below(corners) result(area)
          real(wp), intent(in) :: corners(:, :)   !< (2, corners) [m]
          real(wp) :: part

@@ -16,8 +16,8 @@ module given_pressures
    public :: add_centers, pressures_at_start, check_places, nodes_with_flow, edges_with_flow
    public :: water, suction, set_middles
 contains
-   !> A node in the middle of every undrained element: there its pressures are. docs/theory/host.md section 3.5. The
-   !> regions must be known; coordinates: mean of the vertices.
+   !> Adds a node in the middle of every undrained element: there its pressures are. docs/theory/host.md section 3.5.
+   !> The regions must be known; coordinates: mean of the vertices.
    subroutine add_centers(domain)
       type(domain_t), intent(inout) :: domain
       logical :: closed(size(domain%region_of))   !< Whether the fluids of an element stay in it.
@@ -38,7 +38,7 @@ contains
       call move_alloc(x, domain%mesh%x)
    end subroutine add_centers
 
-   !> p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. Nodes of the ground
+   !> Sets p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. Nodes of the ground
    !> that is asked for have them from the &initial of that ground: an &initial of other ground that has them too, dry
    !> or not there yet, means its own pores. docs/theory/host.md section 8.
    function pressures_at_start(model, ground) result(p)
@@ -64,7 +64,7 @@ contains
       end do
    end function pressures_at_start
 
-   !> Nodes of some elements.
+   !> Finds the nodes of some elements.
    pure function nodes_of(domain, elements) result(there)
       type(domain_t), intent(in) :: domain
       logical, intent(in) :: elements(:)
@@ -77,7 +77,7 @@ contains
       end do
    end function nodes_of
 
-   !> Pore water pressure at the start at a height [kPa]: linear in z, above a water table with a limit;
+   !> Finds the pore water pressure at the start at a height [kPa]: linear in z, above a water table with a limit;
    !> docs/theory/host.md section 8.
    pure real(wp) function water(initial, z)
       type(initial_t), intent(in) :: initial
@@ -87,8 +87,8 @@ contains
       if (initial%with_table) water = max(initial%water_weight*(initial%water_table - z), -initial%largest_suction)
    end function water
 
-   !> Suction at the start at a height [kPa], as water; at and below a water table -p_w, which keeps the air at the
-   !> pressure outside: docs/theory/host.md section 8.
+   !> Finds the suction at the start at a height [kPa], as water; at and below a water table -p_w, which keeps the air
+   !> at the pressure outside: docs/theory/host.md section 8.
    pure real(wp) function suction(initial, z)
       type(initial_t), intent(in) :: initial
       real(wp), intent(in) :: z   !< [m]
@@ -111,7 +111,7 @@ contains
       end do
    end subroutine set_middles
 
-   !> Nodes of elements whose fluids flow, middles of sides included.
+   !> Marks nodes of elements whose fluids flow, middles of sides included.
    pure function nodes_with_flow(domain) result(flows)
       type(domain_t), intent(in) :: domain
       logical :: flows(size(domain%mesh%x, 2))
@@ -131,9 +131,9 @@ contains
       flows = [(all(at(domain%mesh%groups(group)%edges(:, e))), e=1, size(flows))]
    end function edges_with_flow
 
-   !> Values, supports and inflows where no node or element of their group could have them. Fault EXIT_GROUP: a pressure
-   !> is prescribed on no node, or a fluid flows in through no edge, of a coupled region; or p_w, p_c are given for dry
-   !> regions alone. docs/theory/host.md section 3.5.
+   !> Refuses values, supports and inflows where no node or element of their group could have them. Fault EXIT_GROUP: a
+   !> pressure is prescribed on no node, or a fluid flows in through no edge, of a coupled region; or p_w, p_c are given
+   !> for dry regions alone. docs/theory/host.md section 3.5.
    subroutine check_places(model, fault)
       type(model_t), intent(in) :: model
       type(fault_t), intent(inout) :: fault

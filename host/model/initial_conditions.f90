@@ -30,9 +30,9 @@ module initial_conditions
       type(strips_t) :: strips
    end type ground_t
 contains
-   !> State of a model at the start; a fault where a material refuses it. `tension`: points with a tensile stress.
-   !> docs/theory/host.md section 8. Stresses: tension positive, pore pressures: compression positive [kPa]. Fault
-   !> EXIT_MATERIAL.
+   !> Sets the state of a model at the start; a fault where a material refuses it. `tension`: points with a tensile
+   !> stress. docs/theory/host.md section 8. Stresses: tension positive, pore pressures: compression positive [kPa].
+   !> Fault EXIT_MATERIAL.
    subroutine initial_state(model, state, fault, tension)
       type(model_t), intent(in) :: model
       type(model_state_t), intent(out) :: state
@@ -89,7 +89,7 @@ contains
       end do
    end subroutine initial_state
 
-   !> Velocities and pressures of the nodes.
+   !> Sets velocities and pressures of the nodes.
    subroutine set_nodes(model, present, state)
       type(model_t), intent(in) :: model
       logical, intent(in) :: present(:)   !< (elements) In the first stage.
@@ -163,7 +163,7 @@ contains
       end associate
    end subroutine set_given_nodes
 
-   !> Which &initial every element has, of several the last one, and the ground that weighs.
+   !> Finds which &initial every element has, of several the last one, and the ground that weighs.
    function ground_at_start(model) result(ground)
       type(model_t), intent(in) :: model
       type(ground_t) :: ground
@@ -184,7 +184,7 @@ contains
       if (.not. ground%alike) ground%strips = new_strips(model%domain%mesh)
    end function ground_at_start
 
-   !> Effective stress, tension positive.
+   !> Sets the effective stress of a point, tension positive.
    subroutine set_stress(model, ground, element, x, s, stress)
       type(model_t), intent(in) :: model
       type(ground_t), intent(in) :: ground
@@ -209,7 +209,7 @@ contains
       end associate
    end subroutine set_stress
 
-   !> Weight of what lies between a point and the surface, layer by layer [kPa]; where no element does, it is as the
+   !> Weighs what lies between a point and the surface, layer by layer [kPa]; where no element does, it is as the
    !> point's own. docs/theory/host.md section 8.
    real(wp) function weight_above(model, ground, element, x) result(weight)
       type(model_t), intent(in) :: model
@@ -247,7 +247,7 @@ contains
       end do
    end function weight_above
 
-   !> Weight of a piece of a column in the region of an element [kPa].
+   !> Weighs a piece of a column in the region of an element [kPa].
    real(wp) function weight_of_piece(model, initial, element, ends, share) result(weight)
       type(model_t), intent(in) :: model
       type(initial_t), intent(in) :: initial

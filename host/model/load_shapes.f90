@@ -13,8 +13,8 @@ module load_shapes
    private
    public :: integrate_loads, ties_of
 contains
-   !> Nodes that plates make move together: those of the boundaries that share their u_z. And those of &tie. (FIELDS,
-   !> nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
+   !> Finds nodes that plates make move together: those of the boundaries that share their u_z. And those of &tie.
+   !> (FIELDS, nodes), as number_unknowns takes them: docs/theory/host.md sections 7.3 and 7.6.
    function ties_of(model) result(ties)
       type(model_t), intent(in) :: model
       integer, allocatable :: ties(:, :)
@@ -42,7 +42,7 @@ contains
       end do
    end subroutine integrate_loads
 
-   !> Vector of a load at a factor of 1. (unknowns) [kN, m3/s]
+   !> Integrates a load at a factor of 1. (unknowns) [kN, m3/s]
    function vector_of(model, load) result(vector)
       type(model_t), intent(in) :: model
       type(load_t), intent(in) :: load

@@ -27,8 +27,8 @@ module mesh_builder
       integer, allocatable :: cells(:)
    end type blocks_t
 contains
-   !> &mesh. Fault EXIT_INPUT: a mesh of a file cannot be had so fine. EXIT_MESH: as of read_gmsh; breaks that do not
-   !> ascend or do not fit cells and ratios; more than MOST_ELEMENTS.
+   !> Builds the &mesh. Fault EXIT_INPUT: a mesh of a file cannot be had so fine. EXIT_MESH: as of read_gmsh; breaks
+   !> that do not ascend or do not fit cells and ratios; more than MOST_ELEMENTS.
    subroutine build_mesh(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -67,7 +67,7 @@ contains
       end subroutine take_blocks
    end subroutine build_mesh
 
-   !> The mesh of a file; fineness is that of the scene, if it is > 0.
+   !> Reads the mesh of a file; fineness is that of the scene, if it is > 0.
    subroutine read_file(place, file, scale, fineness, mesh, fault)
       character(*), intent(in) :: place, file
       real(wp), intent(in) :: scale, fineness
@@ -94,7 +94,7 @@ contains
       end do
    end subroutine read_file
 
-   !> The built-in mesh; fineness is that of the scene, if it is > 0.
+   !> Makes the built-in mesh; fineness is that of the scene, if it is > 0.
    subroutine make_blocks(place, fineness, r, z, mesh, fault)
       character(*), intent(in) :: place
       real(wp), intent(in) :: fineness
@@ -135,7 +135,7 @@ contains
       ascends = all(breaks(2:) > breaks(:size(breaks) - 1))
    end function ascends
 
-   !> `fineness` times the cells, at least one of a piece, their sizes on the same curve.
+   !> Makes `fineness` times the cells, at least one of a piece, whose sizes stay on the same curve.
    pure subroutine refine(fineness, blocks)
       real(wp), intent(in) :: fineness
       type(blocks_t), intent(inout) :: blocks

@@ -187,7 +187,7 @@ module model_types
       class(term_t), allocatable :: term
    end type term_box_t
 contains
-   !> Unknowns of the coordinates of a plate.
+   !> Lists the unknowns of the coordinates of a plate.
    pure function unknowns_of(plate, dofs) result(unknowns)
       type(plate_t), intent(in) :: plate
       type(dofs_t), intent(in) :: dofs
@@ -196,7 +196,7 @@ contains
       unknowns = [(dofs%of(plate%coordinates(k)%field, plate%coordinates(k)%node), k=1, size(unknowns))]
    end function unknowns_of
 
-   !> Factor of an amplitude at a time; amplitude 0 is 1 throughout. [-]
+   !> Evaluates an amplitude at a time; amplitude 0 is 1 throughout. [-]
    pure real(wp) function factor_at(model, amplitude, time) result(factor)
       type(model_t), intent(in) :: model
       integer, intent(in) :: amplitude
@@ -206,7 +206,7 @@ contains
       if (amplitude > 0) factor = amplitude_at(model%amplitudes(amplitude), time)
    end function factor_at
 
-   !> Least and largest factor of an amplitude, as of factor_at. [-]
+   !> Finds the least and largest value that factor_at has for an amplitude. [-]
    pure function factors_of(model, amplitude) result(factors)
       type(model_t), intent(in) :: model
       integer, intent(in) :: amplitude
@@ -217,7 +217,7 @@ contains
                                     maxval(model%amplitudes(amplitude)%values)]
    end function factors_of
 
-   !> Value of a support or load at a height, at a factor of 1.
+   !> Evaluates a support or load at a height, at a factor of 1.
    pure real(wp) function value_at(one, z) result(value)
       class(acting_t), intent(in) :: one
       real(wp), intent(in) :: z   !< [m]
@@ -225,7 +225,7 @@ contains
       value = one%value + one%value_slope*(z - one%datum)
    end function value_at
 
-   !> Gravity at a time, towards -z [m/s2].
+   !> Scales gravity, which acts towards -z, by its history [m/s2].
    pure real(wp) function gravity_at(model, time)
       type(model_t), intent(in) :: model
       real(wp), intent(in) :: time   !< [s]
@@ -233,7 +233,7 @@ contains
       gravity_at = factor_at(model, model%gravity_amplitude, time)*model%domain%gravity
    end function gravity_at
 
-   !> Share of the stage under way that is over at a time. [-]
+   !> Finds the share of the stage under way that is over at a time. [-]
    pure real(wp) function share_over(problem, time) result(share)
       class(problem_t), intent(in) :: problem
       real(wp), intent(in) :: time   !< [s]
@@ -249,14 +249,14 @@ contains
       text = 'stage '//trim(problem%stage%name)//', time '//short(problem%next%time)//' s: '
    end function now_in
 
-   !> The start of a run, with its initial state.
+   !> Begins a run, with its initial state.
    subroutine begin_run(self, problem, fault)
       class(term_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
    end subroutine begin_run
 
-   !> The start of the stage problem%at%stage, from problem%state; also where a run is taken up within the stage.
+   !> Begins the stage problem%at%stage, from problem%state; also where a run is taken up within the stage.
    subroutine begin_stage(self, begins, problem, fault)
       class(term_t), intent(inout) :: self
       logical, intent(in) :: begins   !< Else the run is in the middle of it.
@@ -264,8 +264,8 @@ contains
       type(fault_t), intent(inout) :: fault
    end subroutine begin_stage
 
-   !> Before an attempt at a step of length dt from problem%state to problem%next; of length 0 where a stage begins.
-   !> problem%constraint has the loads of the scene and of terms before this one in the registry.
+   !> Acts before an attempt at a step of length dt from problem%state to problem%next; of length 0 where a stage
+   !> begins. problem%constraint has the loads of the scene and of terms before this one in the registry.
    subroutine before_step(self, dt, problem, fault)
       class(term_t), intent(inout) :: self
       real(wp), intent(in) :: dt   !< [s]
@@ -273,23 +273,22 @@ contains
       type(fault_t), intent(inout) :: fault
    end subroutine before_step
 
-   !> Behind the supports of the scene: values at the end of the step that the term prescribes.
+   !> Sets, behind the supports of the scene, the values at the end of the step that the term prescribes.
    subroutine prescribe(self, time, problem)
       class(term_t), intent(in) :: self
       real(wp), intent(in) :: time   !< At the end of the step [s].
       type(problem_t), intent(inout) :: problem
    end subroutine prescribe
 
-   !> Behind all that is prescribed: upper limits of unknowns, each held where it stands at its limit at the start of
-   !> the step and free where it lies below.
+   !> Sets, behind all that is prescribed, upper limits of unknowns, each held where it stands at its limit at the start
+   !> of the step and free where it lies below.
    subroutine limit(self, time, problem)
       class(term_t), intent(inout) :: self
       real(wp), intent(in) :: time   !< At the end of the step [s].
       type(problem_t), intent(inout) :: problem
    end subroutine limit
 
-   !> After an iteration of Newton's method: unknowns that the term holds or frees. The step is solved only when no term
-   !> changes one.
+   !> Holds or frees unknowns after an iteration of Newton's method. The step is solved only when no term changes one.
    subroutine choose(self, problem, residual, changed)
       class(term_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
@@ -297,27 +296,28 @@ contains
       logical, intent(inout) :: changed      !< Becomes true where this term changes one.
    end subroutine choose
 
-   !> After a step that Newton's method has solved: values of problem%next that follow from its unknowns.
+   !> Sets, after a step that Newton's method has solved, values of problem%next that follow from its unknowns.
    subroutine complete(self, problem)
       class(term_t), intent(in) :: self
       type(problem_t), intent(inout) :: problem
    end subroutine complete
 
-   !> After an accepted step, booked and not yet taken over. Energies [kJ] of the step grow by what the term dissipated.
+   !> Acts after an accepted step, which is booked and not yet taken over. Energies [kJ] of the step grow by what the
+   !> term dissipated.
    subroutine accept(self, problem, dissipated)
       class(term_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
       real(wp), intent(inout) :: dissipated   !< [kJ]
    end subroutine accept
 
-   !> What the term keeps from step to step, and does not find again from the scene.
+   !> Exchanges what the term keeps from step to step, and does not find again from the scene.
    subroutine exchange(self, problem, archive)
       class(term_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
       class(archive_t), intent(inout) :: archive
    end subroutine exchange
 
-   !> What the term may have to do with a step that fails: the end of a sentence, or nothing.
+   !> Says what the term may have to do with a step that fails: the end of a sentence, or nothing.
    function remark(self, model, time) result(text)
       class(term_t), intent(in) :: self
       type(model_t), intent(in) :: model

@@ -11,8 +11,8 @@ module name_search
    private
    public :: mesh_group, defined_name, history_named, read_stages
 contains
-   !> Place of a group of the mesh that is to be used; a fault names those that there are. Fault EXIT_GROUP: there is
-   !> none, one without entities, or two of them; 0 then.
+   !> Finds a group of the mesh that is to be used; a fault names those that there are. Fault EXIT_GROUP: there is none,
+   !> one without entities, or two of them; 0 then.
    integer function mesh_group(mesh, name, place, fault) result(group)
       type(mesh_t), intent(in) :: mesh
       character(*), intent(in) :: name, place   !< Place: where the scene says it.
@@ -34,7 +34,7 @@ contains
       group = 0
    end function mesh_group
 
-   !> Place of a name among definitions. Fault EXIT_GROUP: it is not among them; 0 then.
+   !> Finds a name among definitions. Fault EXIT_GROUP: it is not among them; 0 then.
    integer function defined_name(key, name, names, place, fault) result(found)
       character(*), intent(in) :: key, name, names(:), place   !< For the fault: key, place. names: (definitions).
       type(fault_t), intent(inout) :: fault
@@ -48,7 +48,7 @@ contains
       end if
    end function defined_name
 
-   !> Place of a history, 0 where none is named. Fault EXIT_GROUP: it is not defined.
+   !> Finds a history, 0 where none is named. Fault EXIT_GROUP: it is not defined.
    integer function history_named(name, names, place, fault) result(found)
       character(*), intent(in) :: name, names(:), place   !< As of defined_name.
       type(fault_t), intent(inout) :: fault
@@ -57,8 +57,8 @@ contains
       if (name /= '') found = defined_name('history', name, names, place, fault)
    end function history_named
 
-   !> The key `stages` of a group, once the stages are known: in which of them it acts, in all without the key. That
-   !> there are stages of these names is known (scene_names).
+   !> Reads the key `stages` of a group, once the stages are known: in which of them it acts, in all without the key.
+   !> That there are stages of these names is known (scene_names).
    subroutine read_stages(k, model, in_stage, meaning)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(in) :: model

@@ -25,7 +25,7 @@ module named_points
                                                   0.5_wp, 0.5_wp, 0.0_wp, 0.5_wp], [2, 6])
    integer, parameter :: MOST_ITERATIONS = 20      !< For the local coordinates in an element with bent sides.
 contains
-   !> Nodes, weights and nearest quadrature point of a point. Fault EXIT_GROUP: it lies outside the mesh.
+   !> Finds the nodes, weights and nearest quadrature point of a point. Fault EXIT_GROUP: it lies outside the mesh.
    subroutine find_point(m, point, fault)
       type(domain_t), intent(in) :: m
       type(point_t), intent(inout) :: point
@@ -74,7 +74,7 @@ contains
       end associate
    end subroutine find_point
 
-   !> Local coordinates of a place, by Newton's method, and the least of its three area coordinates: negative outside.
+   !> Finds local coordinates of a place by Newton's method, and the least of its area coordinates: negative outside.
    pure subroutine find_local(x, place, local, within)
       real(wp), intent(in) :: x(2, 6), place(2)   !< Nodes [m]; [m].
       real(wp), intent(out) :: local(2)           !< xi, eta
@@ -103,7 +103,7 @@ contains
       end do
    end subroutine find_local
 
-   !> Values at a point of what the nodes have: of displacements or their rates, and of pressures, if there are any.
+   !> Interpolates at a point what the nodes have: of displacements or their rates, and of pressures, if there are any.
    pure function values_at(point, x) result(values)
       type(point_t), intent(in) :: point
       real(wp), intent(in) :: x(:, :)   !< (DISPLACEMENTS or FIELDS, nodes)

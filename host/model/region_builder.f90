@@ -31,7 +31,7 @@ module region_builder
    !> Units of stress in which nobody gives a reference pressure in kPa: 100 MPa, or a tenth of a kPa.
    character(3), parameter :: FOREIGN_UNITS(2) = [character(3) :: 'Pa', 'MPa']
 contains
-   !> &retention. The fault of its curve is told where a region asks for it.
+   !> Builds a &retention. The fault of its curve is told where a region asks for it.
    subroutine build_retention(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -43,7 +43,7 @@ contains
       if (.not. k%lists) model%curves = [model%curves, curve]
    end subroutine build_retention
 
-   !> &permeability. Fault EXIT_INPUT: an empty range of saturation.
+   !> Builds a &permeability. Fault EXIT_INPUT: an empty range of saturation.
    subroutine build_permeability(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -72,8 +72,8 @@ contains
       model%domain%permeabilities = [model%domain%permeabilities, law]
    end subroutine build_permeability
 
-   !> The group of a material, whose law checks its own keys. Faults: those of new_material; EXIT_INPUT: tangent = 0, or
-   !> a law in Pa or MPa.
+   !> Builds the group of a material, whose law checks its own keys. Faults: those of new_material; EXIT_INPUT: tangent
+   !> = 0, or a law in Pa or MPa.
    subroutine build_material(group, model, fault)
       type(group_t), intent(inout) :: group
       type(model_t), intent(inout) :: model
@@ -100,8 +100,8 @@ contains
       if (fault%code == 0) model%materials = [model%materials, material]
    end subroutine build_material
 
-   !> What the tolerance of the steps asks of the keys that a material leaves out: tolerance and scheme of MUD; nothing
-   !> of other laws. docs/theory/host.md section 4.5.
+   !> Sets what the tolerance of the steps asks of the keys that a material leaves out: tolerance and scheme of MUD;
+   !> nothing of other laws. docs/theory/host.md section 4.5.
    subroutine ask_stress(tolerance, group)
       real(wp), intent(in) :: tolerance   !< Of the scene [-]; 0: nothing.
       type(group_t), intent(inout) :: group
@@ -115,9 +115,9 @@ contains
       if (.not. given(group, 'scheme') .and. tolerance < TIGHT) call set_entry(group, 'scheme', '2')
    end subroutine ask_stress
 
-   !> &region, once mesh, laws and curves are known: its part of the domain. Fault EXIT_GROUP: a group or name that is
-   !> not defined, or an element of two regions. EXIT_INPUT: no void ratio where there are fluids, two retentions or
-   !> none, saturation_rate = "suction" with a saturation that is a state; and what the curve refuses.
+   !> Builds a &region, once mesh, laws and curves are known: its part of the domain. Fault EXIT_GROUP: a group or name
+   !> that is not defined, or an element of two regions. EXIT_INPUT: no void ratio where there are fluids, two
+   !> retentions or none, saturation_rate = "suction" with a saturation that is a state; and what the curve refuses.
    subroutine build_region(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -172,7 +172,7 @@ contains
       end associate
    end subroutine build_region
 
-   !> The elements of the last region. One without a group has those that no other region names, wherever it stands;
+   !> Takes the elements of the last region. One without a group has those that no other region names, wherever it is;
    !> elements that two groups name are refused, for nothing says which region they belong to.
    subroutine take_elements(regions, elements, region_of, fault)
       type(given_region_t), intent(in) :: regions(:)

@@ -19,8 +19,8 @@ module settings_builder
    integer, parameter :: MANY = 1000000
    integer, parameter :: WITH_U = 1, WITH_P_W = 2, WITH_P_C = 3   !< Words of the key fields.
 contains
-   !> &scene, once the histories are known. Fault EXIT_GROUP: a history that is not defined; EXIT_INPUT: no quadrature
-   !> rule of so many points.
+   !> Reads &scene, once the histories are known. Fault EXIT_GROUP: a history that is not defined; EXIT_INPUT: no
+   !> quadrature rule of so many points.
    subroutine build_settings(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -75,7 +75,7 @@ contains
       end associate
    end subroutine build_settings
 
-   !> &fluids.
+   !> Reads &fluids.
    subroutine build_fluids(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -97,7 +97,7 @@ contains
       end associate
    end subroutine build_fluids
 
-   !> &point, in a domain that is prepared. Fault EXIT_GROUP: it lies outside the mesh.
+   !> Builds a &point, in a domain that is prepared. Fault EXIT_GROUP: it lies outside the mesh.
    subroutine build_point(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model

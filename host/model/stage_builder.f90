@@ -29,8 +29,8 @@ module stage_builder
    real(wp), parameter :: OPENING = 0.0_wp    !< With contact: no energy is gained where a penalty opens and closes
                                               !< (docs/theory/host.md section 4.1).
 contains
-   !> &history: times and factors from the keys, from a file with two numbers a line, or of a known shape. Fault
-   !> EXIT_INPUT: keys that contradict each other, a file that cannot be read, times that do not ascend.
+   !> Builds a &history: times and factors from the keys, from a file with two numbers a line, or of a known shape.
+   !> Fault EXIT_INPUT: keys that contradict each other, a file that cannot be read, times that do not ascend.
    subroutine build_history(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -85,8 +85,8 @@ contains
       model%amplitudes = [model%amplitudes, amplitude]
    end subroutine build_history
 
-   !> &stage, once the tolerance of the scene is known. Fault EXIT_INPUT: steps that lack dt, or ends of steps that
-   !> cannot be read or do not ascend.
+   !> Builds a &stage, once the tolerance of the scene is known. Fault EXIT_INPUT: steps that lack dt, or ends of steps
+   !> that cannot be read or do not ascend.
    subroutine build_stage(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -150,7 +150,7 @@ contains
       model%stages = [model%stages, stage]
    end subroutine build_stage
 
-   !> What the tolerance of the scene asks of the keys that a stage leaves out: steps, and Newton's tolerance.
+   !> Sets what the tolerance of the scene asks of the keys that a stage leaves out: steps, and Newton's tolerance.
    !> docs/theory/host.md section 4.5. Fault EXIT_INPUT: steps = "given" without dt.
    subroutine ask_steps(k, tolerance, by_error, stage, fault)
       type(key_table_t), intent(in) :: k
@@ -228,8 +228,8 @@ contains
       call move_alloc(arcs, h%arcs)
    end subroutine place
 
-   !> rho_inf and the measure of Newton's error of the stages that the scene leaves them open in. docs/theory/host.md
-   !> sections 4.1 and 5.1.
+   !> Sets rho_inf and the measure of Newton's error of the stages that the scene leaves them open in.
+   !> docs/theory/host.md sections 4.1 and 5.1.
    pure subroutine choose_schemes(model)
       type(model_t), intent(inout) :: model
       logical :: touching

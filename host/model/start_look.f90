@@ -41,7 +41,7 @@ contains
       end do
    end subroutine warn_of_start
 
-   !> A start that is not in balance. Where no &initial gives a stress, a static stage finds the balance.
+   !> Warns of a start that is not in balance. Where no &initial gives a stress, a static stage finds the balance.
    subroutine look_at_balance(model, balance)
       type(model_t), intent(in) :: model
       type(balance_t), intent(in) :: balance
@@ -63,7 +63,7 @@ contains
                        'surface, surcharge, k_0 and p_w with the loads of the start.'//why)
    end subroutine look_at_balance
 
-   !> Air that is not at atmospheric pressure where the pores hold some, though nothing of the scene asks for it.
+   !> Warns of air that is not at atmospheric pressure where pores hold some, though nothing in the scene asks so.
    subroutine look_at_air(model)
       type(model_t), intent(in) :: model
       character(:), allocatable :: meant
@@ -108,7 +108,7 @@ contains
       end function meant_by
    end subroutine look_at_air
 
-   !> Ground that joins or leaves in a dynamic stage where dashpots alone hold the rest upright.
+   !> Warns of ground that joins or leaves in a dynamic stage where dashpots alone hold the rest upright.
    subroutine look_at_dashpots(model)
       type(model_t), intent(in) :: model
       integer :: s, i
@@ -129,7 +129,7 @@ contains
       end do
    end subroutine look_at_dashpots
 
-   !> Water whose weight follows a history of gravity while its pressure is held: the skeleton bears the change.
+   !> Warns of water whose weight follows gravity while its pressure is held: the skeleton bears the change.
    subroutine look_at_held_water(model)
       type(model_t), intent(in) :: model
       integer, parameter :: TIMES = 32   !< At which the history is asked in a stage.
@@ -158,7 +158,7 @@ contains
       end do
    end subroutine look_at_held_water
 
-   !> Water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
+   !> Warns of water that stands on a free surface, by the p_w of a &fix there, without the load of its pressure.
    subroutine look_at_water_outside(model)
       type(model_t), intent(in) :: model
       logical, allocatable :: held(:, :), pressed(:)
@@ -197,7 +197,7 @@ contains
       end do
    end subroutine look_at_water_outside
 
-   !> Nodes on which something presses in a stage.
+   !> Marks the nodes on which something presses in a stage.
    pure function nodes_under_pressure(model, number) result(pressed)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number   !< Of the stage.
@@ -213,7 +213,7 @@ contains
       end do
    end function nodes_under_pressure
 
-   !> A displacement that does not begin from rest in a dynamic stage: what moves at once is struck.
+   !> Warns of a displacement that does not begin from rest in a dynamic stage: what moves at once is struck.
    subroutine look_at_motion(model, fix)
       type(model_t), intent(in) :: model
       type(fix_t), intent(in) :: fix
@@ -251,7 +251,7 @@ contains
       end associate
    end subroutine look_at_motion
 
-   !> A prescribed displacement that stays on beyond a stage that sets displacements to zero: it is prescribed again.
+   !> Warns of a prescribed displacement that goes on after a stage that sets displacements to zero.
    subroutine look_at_zero(model, fix)
       type(model_t), intent(in) :: model
       type(fix_t), intent(in) :: fix
@@ -272,7 +272,7 @@ contains
       end do
    end subroutine look_at_zero
 
-   !> A force that seems to be in N, and a plate on the ground that nothing presses down.
+   !> Warns of a force that seems to be in N, and a plate on the ground that nothing presses down.
    subroutine look_at_plate(model, plate)
       type(model_t), intent(in) :: model
       type(plate_t), intent(in) :: plate

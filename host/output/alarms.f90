@@ -94,7 +94,7 @@ contains
          'that of the start: volumes, weights and stresses there err by about as much.', once='strain')
    end subroutine warn_of_strain
 
-   !> Largest magnitude of the principal strains.
+   !> Finds the largest magnitude of the principal strains.
    pure real(wp) function principal(strain)
       real(wp), intent(in) :: strain(4)   !< rr, zz, tt, engineering shear.
       real(wp) :: mean, radius

@@ -10,7 +10,7 @@ module contact_rows
    private
    public :: contact_columns, contact_row, contact_nodes
 contains
-   !> Columns of contact.csv. Their units: see contact_row.
+   !> Names the columns of contact.csv; contact_row has their units.
    function contact_columns(model) result(head)
       type(model_t), intent(in) :: model
       character(:), allocatable :: head
@@ -35,11 +35,11 @@ contains
       end do
    end function contact_columns
 
-   !> Row of contact.csv: contacts at the level of values within the step, plates at its end. time, dt [s], work [kJ];
-   !> of every contact vertical force on the master, upwards [kN], energy of the penalty [kJ], area of the active nodes
-   !> [m2], active nodes, sealed nodes, friction on the master along the slave's tangent, summed up [kN], nodes whose
-   !> friction is at its limit; of every coordinate of a plate its value [m], rate [m/s], acceleration [m/s2] and load
-   !> [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
+   !> Makes the row of contact.csv: contacts at the level of values within the step, plates at its end. time, dt [s],
+   !> work [kJ]; of every contact vertical force on the master, upwards [kN], energy of the penalty [kJ], area of the
+   !> active nodes [m2], active nodes, sealed nodes, friction on the master along the slave's tangent, summed up [kN],
+   !> nodes whose friction is at its limit; of every coordinate of a plate its value [m], rate [m/s], acceleration
+   !> [m/s2] and load [kN]; of an angle [-], [1/s], [1/s2], moment [kN m].
    function contact_row(run, work) result(row)
       type(run_t), intent(in) :: run   !< After a step that was taken over.
       real(wp), intent(in) :: work     !< Work done on contacts so far [kJ].
@@ -84,9 +84,9 @@ contains
       end function values
    end function contact_row
 
-   !> Slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at the
-   !> start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step. A
-   !> state that a kernel refuses has none.
+   !> Lists slave nodes of the contacts that act, at the displacements of a state: number of the contact, coordinates at
+   !> the start, weight, share of it that is covered, gap, pressure, shear stress of friction at the start of its step.
+   !> A state that a kernel refuses has none.
    function contact_nodes(run) result(table)
       type(run_t), intent(in) :: run
       real(wp), allocatable :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]

@@ -54,7 +54,7 @@ module energy_ledger
 contains
    !> All works are those of mean forces of a step times its displacements. So is that of the supports: what they hold
    !> is formed anew from the mean forces, since the reactions of the scheme hold at its own level, not half-way.
-   !> docs/theory/host.md section 9. All in [kJ], outflow in [m3].
+   !> docs/theory/host.md section 9. All are in [kJ], the outflow is in [m3].
    subroutine book_step(run, ledger)
       type(run_t), intent(in) :: run   !< After a step.
       type(ledger_t), intent(inout) :: ledger
@@ -102,7 +102,7 @@ contains
    end function damping_in
 
    !> Takes the stress of the damping to the end of the step: such that the one of the equations lies between both at
-   !> the level of values, as every other force does. None in a step without inertia. docs/theory/host.md section 9.
+   !> the level of values, as every other force does. A step without inertia has none. docs/theory/host.md section 9.
    subroutine follow_damping(run, damping_stress)
       type(run_t), intent(in) :: run
       real(wp), intent(inout) :: damping_stress(:, :)
@@ -123,7 +123,7 @@ contains
       end do
    end subroutine follow_damping
 
-   !> The displacements of a step that supports prescribe, zero elsewhere [m].
+   !> Finds the displacements of a step that supports prescribe, zero elsewhere [m].
    pure function moved_by_supports(run, change) result(held)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: change(:, :)   !< (2, nodes) of all [m]
@@ -141,7 +141,7 @@ contains
       end do
    end function moved_by_supports
 
-   !> Forces on nodes: loads, contacts, and the inertia of bodies that supports move.
+   !> Books the forces on nodes: loads, contacts, and the inertia of bodies that supports move.
    subroutine book_forces(run, change, ledger)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: change(:, :)
@@ -164,7 +164,7 @@ contains
       end do
    end subroutine book_forces
 
-   !> Flow out through prescribed pressures and past limits, less the rain. docs/theory/host.md section 9.
+   !> Books the flow out through prescribed pressures and past limits, less the rain. docs/theory/host.md section 9.
    subroutine book_outflow(run, ledger)
       type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
@@ -176,7 +176,7 @@ contains
       ledger%outflow_air = ledger%outflow_air + left(2)
    end subroutine book_outflow
 
-   !> Work that moves an element as a step does, inertia included [kJ].
+   !> Sums the work that moves an element as a step does, inertia included [kJ].
    real(wp) function work_to_move_element(e, run, damping_stress, du) result(total)
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
@@ -190,7 +190,7 @@ contains
       total = work%skeleton + work%pores + work%damping + work%inertia - work%gravity
    end function work_to_move_element
 
-   !> Work of the mean forces in an element at displacements of its nodes.
+   !> Adds the work of the mean forces in an element at displacements of its nodes.
    subroutine add_work_of_element(e, run, damping_stress, du, work)
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
@@ -236,7 +236,7 @@ contains
       end associate
    end subroutine add_work_of_element
 
-   !> Energy that seepage dissipates in an element.
+   !> Books the energy that seepage dissipates in an element.
    subroutine book_seepage(e, run, ledger)
       integer, intent(in) :: e
       type(run_t), intent(in) :: run
@@ -268,7 +268,7 @@ contains
       end do
    end subroutine book_seepage
 
-   !> Kinetic energy of the soil and of the bodies with a mass [kJ]. docs/theory/host.md section 9.
+   !> Sums the kinetic energy of the soil and of the bodies with a mass [kJ]. docs/theory/host.md section 9.
    real(wp) function kinetic_energy(run, state) result(energy)
       type(run_t), intent(in) :: run
       type(model_state_t), intent(in) :: state   !< State of the run before or after a step.
@@ -294,8 +294,8 @@ contains
       end associate
    end function kinetic_energy
 
-   !> After a step is booked: the largest work so far and, in a dynamic stage, the most energy created, which is what
-   !> the balance leaves open with the wrong sign. docs/theory/host.md section 9.
+   !> Notes, after a step is booked, the largest work so far and, in a dynamic stage, the most energy created, which is
+   !> what the balance leaves open with the wrong sign. docs/theory/host.md section 9.
    pure subroutine book_creation(run, ledger)
       type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
@@ -321,8 +321,8 @@ contains
       if (run%scheme%has_inertia) ledger%most_created = max(ledger%most_created, ledger%open_0 - imbalance(ledger))
    end subroutine book_creation
 
-   !> Created energy up to which nothing is said: a share of the largest work, and what no balance can tell from zero.
-   !> Of a body at rest the work is as small as that. [kJ] docs/theory/host.md section 9.
+   !> Finds the created energy up to which nothing is said: a share of the largest work, and what no balance can tell
+   !> from zero. Of a body at rest the work is as small as that. [kJ] docs/theory/host.md section 9.
    pure real(wp) function allowed_creation(share, ledger)
       real(wp), intent(in) :: share   !< [-]
       type(ledger_t), intent(in) :: ledger
@@ -330,7 +330,8 @@ contains
       allowed_creation = share*ledger%largest_work + ledger%tolerated
    end function allowed_creation
 
-   !> Energy that the mechanical balance leaves open [kJ]. docs/theory/host.md section 9; positive: energy is lost.
+   !> Finds the energy that the mechanical balance leaves open [kJ]. docs/theory/host.md section 9; positive: energy is
+   !> lost.
    pure real(wp) function imbalance(ledger)
       type(ledger_t), intent(in) :: ledger
 

@@ -86,7 +86,7 @@ contains
          end if
       end associate
    contains
-      !> Number of the last picture up to a share of the stage.
+      !> Finds the number of the last picture up to a share of the stage.
       pure integer function picture_of(share)
          real(wp), intent(in) :: share   !< [-]
 
@@ -94,7 +94,7 @@ contains
       end function picture_of
    end function is_due
 
-   !> mesh.h5: nodes, elements, quadrature points, region of every element. Fault EXIT_OUTPUT: it cannot be written.
+   !> Writes mesh.h5: nodes, elements, quadrature points, regions. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_mesh(folder, model, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model
@@ -143,7 +143,7 @@ contains
       call close_file(file)
    end subroutine check_mesh
 
-   !> fields_NUMBER.h5 of the present state, and results.xdmf up to it. Fault EXIT_OUTPUT: they cannot be written.
+   !> Writes fields_NUMBER.h5 of the present state, and results.xdmf up to it. Fault EXIT_OUTPUT: that cannot be done.
    subroutine write_frame(self, run, fault)
       class(field_observer_t), intent(inout) :: self
       type(run_t), intent(in) :: run

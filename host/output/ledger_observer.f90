@@ -149,7 +149,7 @@ contains
       end associate
    end subroutine look_at_creation
 
-   !> Energy in kJ and as a share.
+   !> Says an energy in kJ and as a share.
    function amount(ledger) result(text)
       type(ledger_t), intent(in) :: ledger
       character(:), allocatable :: text

@@ -107,7 +107,7 @@ contains
       call tell(self, run, worst)
    end subroutine book
 
-   !> The points of an element: shear work of the step, where positive, and whether the tangent has lost ellipticity.
+   !> Looks at the points of an element: positive shear work of the step, and whether the tangent lost ellipticity.
    pure subroutine look_at_element(run, e, work, lost)
       type(run_t), intent(in) :: run
       integer, intent(in) :: e

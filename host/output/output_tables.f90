@@ -97,8 +97,8 @@ contains
       end do
    end function history_columns
 
-   !> A row of histories.csv: time and the columns of every named point. Units [s, m, kPa, m/s, m/s2, kPa, -, -],
-   !> stresses tension positive. Fault EXIT_OUTPUT: it cannot be written.
+   !> Writes a row of histories.csv: time and the columns of every named point. Units are [s, m, kPa, m/s, m/s2, kPa,
+   !> -, -]; tension is positive. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_history(table, run, fault)
       type(csv_t), intent(inout) :: table
       type(run_t), intent(in) :: run
@@ -123,8 +123,8 @@ contains
       end function values
    end subroutine write_history
 
-   !> A row of reactions_STAGE.csv after a step. The file belongs to the stage: it begins with its first row, or goes on
-   !> where it was at the checkpoint. Units: see reaction_row. Fault EXIT_OUTPUT: it cannot be written.
+   !> Writes a row of reactions_STAGE.csv after a step. The file belongs to the stage: it begins with its first row, or
+   !> goes on where it was at the checkpoint. reaction_row has the units. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_reactions(self, run, fault)
       type(table_observer_t), intent(inout) :: self
       type(run_t), intent(in) :: run
@@ -141,7 +141,7 @@ contains
       call write_row(self%reactions, fault)
    end subroutine write_reactions
 
-   !> Path of the table of reactions of a stage.
+   !> Names the table of reactions of a stage.
    pure function reactions_of(folder, stage) result(path)
       character(*), intent(in) :: folder, stage
       character(:), allocatable :: path
@@ -149,8 +149,8 @@ contains
       path = folder//'/reactions_'//trim(stage)//'.csv'
    end function reactions_of
 
-   !> nodes_STAGE.csv and points_STAGE.csv. Units [m, kPa, m/s], weight [m3], stresses tension positive. Fault
-   !> EXIT_OUTPUT: they cannot be written.
+   !> Writes nodes_STAGE.csv and points_STAGE.csv. Units are [m, kPa, m/s], weights in [m3]; tension is positive.
+   !> Fault EXIT_OUTPUT: they cannot be written.
    subroutine write_fields(folder, run, name, fault)
       character(*), intent(in) :: folder, name   !< Beginning and end of the paths.
       type(run_t), intent(in) :: run
@@ -171,8 +171,8 @@ contains
       end associate
    end subroutine write_fields
 
-   !> points.csv: the place of every point of the scene, and that of its stresses, the nearest quadrature point, both at
-   !> the start [m]. Fault EXIT_OUTPUT: it cannot be written.
+   !> Writes points.csv: the place of every point of the scene, and that of its stresses, the nearest quadrature point,
+   !> both at the start [m]. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_points(folder, model, fault)
       character(*), intent(in) :: folder
       type(model_t), intent(in) :: model

@@ -107,7 +107,7 @@ contains
       end associate
    end subroutine warn_of_dry_ground
 
-   !> The lines of a mesh: at every corner the pairs of sides that go on from each other.
+   !> Finds the lines of a mesh: at every corner the pairs of sides that go on from each other.
    pure function find_lines(x, t6) result(lines)
       real(wp), intent(in) :: x(:, :)     !< (2, nodes) [m]
       integer, intent(in) :: t6(:, :)     !< (6, elements)
@@ -161,9 +161,9 @@ contains
       end do
    end function find_lines
 
-   !> The corner at which pressures alternate most, and the least distance of it and of both middles beside it from the
-   !> mean of their neighbours where these alternate, share of the range of all pressures; 0 where none do or the range
-   !> is too small to matter. docs/theory/host.md section 3.1.
+   !> Finds the corner at which pressures alternate most, and the least distance of it and of both middles beside it
+   !> from the mean of their neighbours where these alternate, share of the range of all pressures; 0 where none do or
+   !> the range is too small to matter. docs/theory/host.md section 3.1.
    pure subroutine find_alternation(lines, p, counts, share, node)
       type(lines_t), intent(in) :: lines
       real(wp), intent(in) :: p(:)         !< (nodes) [kPa]

@@ -72,7 +72,7 @@ contains
       end if
    end subroutine show_step
 
-   !> A line in the place of the one before, as long as the terminal is wide: one that wraps could not be taken back.
+   !> Replaces the line before by one as long as the terminal is wide: one that wraps could not be taken back.
    subroutine write_line(text, progress)
       character(*), intent(in) :: text
       class(progress_observer_t), intent(inout) :: progress
@@ -85,7 +85,7 @@ contains
       flush (output_unit)
    end subroutine write_line
 
-   !> A duration in hours, minutes or seconds, as text.
+   !> Says a duration in hours, minutes or seconds.
    pure function span_of(seconds) result(text)
       real(wp), intent(in) :: seconds   !< [s]
       character(:), allocatable :: text

@@ -19,7 +19,8 @@ module reaction_rows
                                                    'load_r', 'load_z', 'inflow_w', 'inflow_a', 'at_limit']
    integer, parameter :: OUT_W = 3, OUT_A = 4, LOAD_R = 5, LOAD_Z = 6, IN_W = 7, IN_A = 8, LIMIT = 9
 contains
-   !> Columns of a stage's table; empty where the stage prescribes and loads nothing. docs/theory/host.md section 9.1.
+   !> Names the columns of a stage's table; empty where the stage prescribes and loads nothing. docs/theory/host.md
+   !> section 9.1.
    function reaction_columns(run) result(head)
       type(run_t), intent(in) :: run
       character(:), allocatable :: head
@@ -33,7 +34,7 @@ contains
          head = head//','//quoted(name_of(list(1, i), list(2, i)))
       end do
    contains
-      !> A group and what is told of it; the group of a coordinate by its plate and its load.
+      !> Names a group and what is told of it; the group of a coordinate by its plate and its load.
       function name_of(group, kind) result(name)
          integer, intent(in) :: group, kind
          character(:), allocatable :: name
@@ -51,7 +52,7 @@ contains
       end function name_of
    end function reaction_columns
 
-   !> (2, columns) group and suffix, in the order in which the scene names them.
+   !> Lists group and suffix (2, columns), in the order in which the scene names them.
    subroutine list_columns(model, stage, list)
       type(model_t), intent(in) :: model
       integer, intent(in) :: stage   !< Number of the stage.
@@ -102,8 +103,8 @@ contains
       end subroutine add
    end subroutine list_columns
 
-   !> Row after a step. Forces hold where the step is in balance: at the level of its values. Times [s], forces [kN],
-   !> flows [m3/s], in the order of reaction_columns: docs/theory/host.md section 9.1.
+   !> Makes the row after a step: times [s], forces [kN] and flows [m3/s] in the order of reaction_columns. Forces hold
+   !> where the step is in balance, at the level of its values: docs/theory/host.md section 9.1.
    function reaction_row(run) result(row)
       type(run_t), intent(in) :: run   !< After a step that was taken over.
       real(wp), allocatable :: row(:)

@@ -13,8 +13,8 @@ module run_cost
 
    real(wp), parameter :: MEGABYTE = 1.0e6_wp, OF_A_NUMBER = 8.0_wp   !< [bytes]
 contains
-   !> One sentence; factors as large as the last ones made, 0 before a run. Memory in MB of
-   !> 1e6 bytes.
+   !> Says in a sentence how large a run is; factors are as large as the last ones made, 0 before a run. Memory is in
+   !> MB of 1e6 bytes.
    function size_of_run(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
@@ -27,7 +27,7 @@ contains
             if (any(field == f)) text = text//', '//whole(count(field == f))//trim(merge(' p_w', ' p_c', f == AT_P_W))
          end do
       end associate
-      ! Before and after the step.
+      ! There is a state before the step and one after it.
       associate (s => run%state)
          points = 2.0_wp*(size(s%state) + size(s%stress) + size(s%e) + size(s%s) + size(s%s_rate))
       end associate
@@ -37,7 +37,7 @@ contains
       text = text//'.'
    end function size_of_run
 
-   !> So many numbers.
+   !> Says how much memory so many numbers take.
    function megabytes(numbers) result(text)
       real(wp), intent(in) :: numbers
       character(:), allocatable :: text

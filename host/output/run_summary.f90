@@ -94,7 +94,7 @@ contains
       end do
    end subroutine note_peaks
 
-   !> The summary; nothing of answers that no step has changed, of steps where all are given.
+   !> Writes the summary; nothing of answers that no step has changed, of steps where all are given.
    subroutine print_summary(unit, run, peaks)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(run_t), intent(in) :: run
@@ -135,7 +135,7 @@ contains
          trim(run%model%origin%file)//'" measures them.'
    end subroutine print_summary
 
-   !> A value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
+   !> Says a value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and
    !> millionths. Of three digits, or as many as resolve a part of it.
    pure function with_unit(value, unit, part) result(text)
       real(wp), intent(in) :: value   !< [m], [s] or another unit.
@@ -155,7 +155,7 @@ contains
       end if
    end function with_unit
 
-   !> The power of ten of the first digit of a number, 0 of zero.
+   !> Finds the power of ten of the first digit of a number; that of zero is 0.
    pure integer function order(value)
       real(wp), intent(in) :: value
 
@@ -163,7 +163,7 @@ contains
       if (abs(value) > 0.0_wp) order = floor(log10(abs(value)))
    end function order
 
-   !> "1 step", "2 steps".
+   !> Counts things, as in "1 step" and "2 steps".
    pure function counted(number, noun) result(text)
       integer, intent(in) :: number
       character(*), intent(in) :: noun

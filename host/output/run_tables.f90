@@ -9,7 +9,7 @@ module run_tables
    private
    public :: open_table, exchange_table, write_table
 contains
-   !> A new table; or, after a restart, the one of the run as it was at its checkpoint, if it had a row. Fault
+   !> Opens a new table; or, after a restart, the one of the run as it was at its checkpoint, if it had a row. Fault
    !> EXIT_OUTPUT: it cannot be written.
    subroutine open_table(path, head, table, fault)
       character(*), intent(in) :: path, head
@@ -36,7 +36,7 @@ contains
       call archive%exchange(name//'_bytes', table%bytes, '-', 'bytes of the table '//name)
    end subroutine exchange_table
 
-   !> A table as a whole, unless there is a fault already. Fault EXIT_OUTPUT: it cannot be written.
+   !> Writes a table as a whole, unless there is a fault already. Fault EXIT_OUTPUT: it cannot be written.
    subroutine write_table(path, head, values, fault)
       character(*), intent(in) :: path, head
       real(wp), intent(in) :: values(:, :)   !< (columns, rows)

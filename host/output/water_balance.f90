@@ -161,7 +161,7 @@ contains
             - water_through_dashpots(constraint%linear, run%dofs, constraint%air, run%next%x - run%state%x)
       end associate
    contains
-      !> Mean over the step [m3/s].
+      !> Finds the mean inflow over the step [m3/s].
       pure real(wp) function inflow_at(i)
          integer, intent(in) :: i
 

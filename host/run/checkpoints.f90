@@ -75,8 +75,8 @@ contains
                                  'disk full? The one before is untouched: make room and use --restart.')
    end subroutine write_checkpoint
 
-   !> Puts a prepared run and its observers where the checkpoint was written. Fault EXIT_RESTART: no checkpoint, a
-   !> damaged one, one of another version, or of another scene.
+   !> Puts a prepared run and its observers where the checkpoint was written. Fault EXIT_RESTART: there
+   !> is no checkpoint, or it is damaged, of another version, or of another scene.
    subroutine read_checkpoint(path, run, observers, fault)
       character(*), intent(in) :: path
       type(run_t), intent(inout) :: run

@@ -41,7 +41,7 @@ module error_norms
       logical :: based = .false.
    end type rate_memory_t
 contains
-   !> Memory without rates of earlier steps.
+   !> Makes a memory that has no rates of earlier steps.
    pure function new_memory(nodes, points) result(memory)
       integer, intent(in) :: nodes, points
       type(rate_memory_t) :: memory
@@ -62,16 +62,16 @@ contains
       call archive%exchange('outflow', memory%before%outflow, 'm3/s', 'flows out of the ground one step back')
    end subroutine exchange_memory
 
-   !> C of the leading error of a step for accelerations [-]. 1/12 + 3/8 (l_a - l_f)**2: docs/theory/host.md section
-   !> 4.5; for rho_inf = 1 Zienkiewicz & Xie (1991).
+   !> Finds C of the leading error of a step for accelerations [-], 1/12 + 3/8 (l_a - l_f)**2: docs/theory/host.md
+   !> section 4.5. For rho_inf = 1 it is that of Zienkiewicz & Xie (1991).
    pure real(wp) function constant_of_accelerations(scheme) result(c)
       type(scheme_t), intent(in) :: scheme
 
       c = 1.0_wp/12 + 0.375_wp*(scheme%l_a - scheme%l_f)**2
    end function constant_of_accelerations
 
-   !> C of the leading error of a step for first-order rates [-]. 1/12 + (l_p - l_f)**2: docs/theory/host.md section
-   !> 4.5.
+   !> Finds C of the leading error of a step for first-order rates [-], 1/12 + (l_p - l_f)**2: docs/theory/host.md
+   !> section 4.5.
    pure real(wp) function constant_of_rates(scheme) result(c)
       type(scheme_t), intent(in) :: scheme
 
@@ -142,9 +142,10 @@ contains
       end associate
    end subroutine local_errors
 
-   !> Error of a static step [unit of the rate times s]: its ends are in equilibrium, and within it the material follows
-   !> a straight path instead of a bent one: the bend, dt**2/12 of its second derivative in the mean, as far as the
-   !> stiffness changes along it, which is the share by which the rate does. docs/theory/host.md section 4.5.
+   !> Estimates the error of a static step [unit of the rate times s]: its ends are in equilibrium, and within it the
+   !> material follows a straight path instead of a bent one: the bend, dt**2/12 of its second derivative in the mean,
+   !> as far as the stiffness changes along it, which is the share by which the rate does. docs/theory/host.md section
+   !> 4.5.
    pure function static_error(rate, rate_before, dt, dt_before) result(error)
       real(wp), intent(in) :: rate(:, :), rate_before(:, :)   !< (fields, nodes) of this step and of the last one.
       real(wp), intent(in) :: dt, dt_before                   !< Lengths of both steps [s].

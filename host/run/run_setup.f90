@@ -18,7 +18,7 @@ module run_setup
    private
    public :: prepare_run
 contains
-   !> A run at its start; a fault where the initial state is refused. Faults: those of initial_state, prepare_contacts,
+   !> Makes a run at its start. Faults are those of initial_state, which may refuse the state, of prepare_contacts,
    !> keep_flow and the terms.
    subroutine prepare_run(model, run, fault)
       type(model_t), intent(inout), target :: model   !< It stays as long as the run, which sets tolerances of its laws.
@@ -44,8 +44,8 @@ contains
       if (fault%code == 0 .and. model%subtract_flow) call keep_flow(run, fault)
    end subroutine prepare_run
 
-   !> The flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault EXIT_MATERIAL:
-   !> a material refuses the initial state.
+   !> Keeps the flow of the initial state, to be subtracted from then on. docs/theory/host.md section 8. Fault
+   !> EXIT_MATERIAL: a material refuses the initial state.
    subroutine keep_flow(run, fault)
       type(run_t), intent(inout) :: run
       type(fault_t), intent(inout) :: fault

@@ -20,8 +20,8 @@ module start_balance
    real(wp), parameter :: ROUNDING = 1.0e-9_wp   !< Share of the forces of the elements at a node.
    real(wp), parameter :: SMALL = 0.01_wp     !< Share of the largest stress of the ground that is none.
 contains
-   !> The largest unbalanced stress of a prepared run; not known where a material or contact refuses the start. Of the
-   !> loads of the first stage those count that the ground carries already: what is more acts at once, on purpose.
+   !> Finds the largest unbalanced stress of a prepared run; not known where a material or contact refuses the start. Of
+   !> the loads of the first stage those count that the ground carries already: what is more acts at once, on purpose.
    subroutine find_imbalance(run, balance)
       type(run_t), intent(in) :: run
       type(balance_t), intent(out) :: balance
@@ -81,8 +81,8 @@ contains
       end do
    end subroutine add_weight_of_water
 
-   !> Largest pressure of a load of the first stage that is at time 0 that of the pore water wherever it acts, else 0
-   !> [kPa].
+   !> Finds the largest pressure of a load of the first stage that is at time 0 that of the pore water wherever it acts,
+   !> else 0 [kPa].
    real(wp) function water_in(run, load) result(most)
       type(run_t), intent(in) :: run
       type(load_t), intent(in) :: load
@@ -162,8 +162,8 @@ contains
       end subroutine carry
    end subroutine add_carried_loads
 
-   !> For every displacement the area that a stress on one side of its nodes acts on with it, along r and z, from either
-   !> side; and the largest total normal stress around it, less that of water on the ground; 0 without effective
+   !> Finds for every displacement the area that a stress on one side of its nodes acts on with it, along r and z, from
+   !> either side; and the largest total normal stress around it, less that of water on the ground; 0 without effective
    !> stress [kPa].
    subroutine look_around(run, standing, areas, stress)
       type(run_t), intent(in) :: run

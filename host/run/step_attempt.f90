@@ -46,9 +46,9 @@ contains
       end associate
    end subroutine begin_stage
 
-   !> From run%state to run%next; where it fails the next step is smaller, or the fault says why there is none.
-   !> docs/theory/host.md section 4.4. Faults: those of set_step; that of explain_failure where no cut is
-   !> left, the linear solver failed, or the matrix is singular by no soft point.
+   !> Tries a step from run%state to run%next; where it fails the next step is smaller, or the fault says why there is
+   !> none. docs/theory/host.md section 4.4. Faults: those of set_step; that of explain_failure where no cut is left,
+   !> the linear solver failed, or the matrix is singular by no soft point.
    subroutine try_step(dt, run, accepted, fault)
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run
@@ -130,8 +130,8 @@ contains
       dt = max(LEAST_OF_STAGE*run%stage%duration, LEAST_SPACINGS*spacing(run%state%time))
    end function shortest_step
 
-   !> Loads and prescribed unknowns of a step from the state that it starts from, of the scene and of its terms. Its
-   !> length is 0 where a stage begins.
+   !> Sets loads and prescribed unknowns of a step from the state that it starts from, of the scene and of its terms.
+   !> Its length is 0 where a stage begins.
    subroutine set_step(dt, run, fault)
       real(wp), intent(in) :: dt   !< [s]
       type(run_t), intent(inout) :: run

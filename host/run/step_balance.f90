@@ -21,8 +21,8 @@ contains
       call find_mean_forces(run)
    end subroutine balance_step
 
-   !> Flow out through prescribed pressures and past limits at the end of a step, less what is offered to these: what
-   !> they refuse never entered.
+   !> Finds the flow out through prescribed pressures and past limits at the end of a step, less what is offered to
+   !> these: what they refuse never entered.
    subroutine find_outflow(run)
       type(run_t), intent(inout) :: run
       real(wp) :: flow(OUTFLOWS)
@@ -43,8 +43,8 @@ contains
       end associate
    end subroutine find_outflow
 
-   !> Mean flow out over a step [m3/s]: that of the rate of what is stored, so that what has left is what is missing
-   !> inside, whatever the steps.
+   !> Finds the mean flow out over a step [m3/s]: that of the rate of what is stored, so that what has left is what is
+   !> missing inside, whatever the steps.
    pure function mean_outflow(run) result(mean)
       type(run_t), intent(in) :: run
       real(wp) :: mean(OUTFLOWS)
@@ -52,8 +52,8 @@ contains
       mean = run%state%outflow + run%scheme%gamma_1*(run%next%outflow - run%state%outflow)
    end function mean_outflow
 
-   !> Mean of the forces of contacts and springs at the ends of a step, to be added to the internal ones; those of the
-   !> contacts are zero where the displacements are refused.
+   !> Finds the mean of the forces of contacts and springs at the ends of a step, to be added to the internal ones;
+   !> those of the contacts are zero where the displacements are refused.
    subroutine find_mean_forces(run)
       type(run_t), intent(inout) :: run
       real(wp), allocatable :: before(:), after(:)

@@ -3,11 +3,11 @@
 module step_failure
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: wp
+   use acting_places, only: location_of
    use faults, only: fault_t, raise
    use texts, only: short, whole
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
-   use model_types, only: model_t
    use convergence, only: BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
    use run_state, only: run_t
@@ -89,8 +89,8 @@ contains
       end associate
    end subroutine explain_failure
 
-   !> Likely causes and advice where Newton's method does not converge: where shorter attempts have failed as well, none
-   !> of them.
+   !> Tells likely causes and advice where Newton's method does not converge: where shorter attempts have failed as
+   !> well, none of them.
    function advice(run, time) result(text)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: time   !< [s]
@@ -112,7 +112,7 @@ contains
       text = text//'a better tangent (tangent of the material) or a larger tolerance.'
    end function advice
 
-   !> Remark that soil began without stress, where it did: the likely cause of a failure.
+   !> Remarks that soil began without stress, where it did: the likely cause of a failure.
    function unstressed(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
@@ -139,7 +139,7 @@ contains
                  'time: '//cause)
    end subroutine explain_short_step
 
-   !> Remark on how many points were given the elastic stiffness in the last pass, and where most of them are; nothing
+   !> Remarks on how many points were given the elastic stiffness in the last pass, and where most of them are; nothing
    !> if none.
    function soft_points(run) result(text)
       type(run_t), intent(in) :: run
@@ -158,8 +158,8 @@ contains
              'most of them in element '//whole(e)//', ('//short(x(1))//', '//short(x(2))//') m'
    end function soft_points
 
-   !> The largest and the least slope of the free displacements, where the least are rounding beside the largest or sums
-   !> of these overflow; else nothing.
+   !> Names the largest and the least slope of the free displacements, where the least are rounding beside the largest
+   !> or sums of these overflow; else nothing.
    function unequal_slopes(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text
@@ -183,26 +183,7 @@ contains
       end associate
    end function unequal_slopes
 
-   !> Where a node is: the plate that it stands for, or an element and the point [m].
-   function location_of(model, node) result(text)
-      type(model_t), intent(in) :: model
-      integer, intent(in) :: node
-      character(:), allocatable :: text
-      integer :: e, i
-
-      associate (mesh => model%domain%mesh)
-         i = findloc(model%plates%node, node, dim=1)
-         if (i > 0) then
-            text = 'plate '//trim(model%plates(i)%name)
-         else
-            e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
-            text = 'node '//whole(node)//' of element '//whole(e)//', ('//short(mesh%x(1, node))//', '// &
-                   short(mesh%x(2, node))//') m'
-         end if
-      end associate
-   end function location_of
-
-   !> The error that should have fallen below the tolerance, with its present value.
+   !> Names the error that should have fallen below the tolerance, with its present value.
    function what_is_left(run) result(text)
       type(run_t), intent(in) :: run
       character(:), allocatable :: text

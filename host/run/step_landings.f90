@@ -27,8 +27,8 @@ module step_landings
    !> A closing nearer than this share of the step that the error asks for is not landed on: the step may hold it.
    real(wp), parameter :: NEAREST = 0.015_wp
 contains
-   !> The next time that a step has to end at: a break of what acts, a support that comes or goes, a time of output,
-   !> the end of the stage [s]. docs/theory/host.md section 4.5.
+   !> Finds the next time that a step has to end at: a break of what acts, a support that comes or goes, a time of
+   !> output, the end of the stage [s]. docs/theory/host.md section 4.5.
    real(wp) function next_time(run, reach) result(next)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: reach   !< No step goes farther than this from the present time [s].
@@ -62,9 +62,9 @@ contains
       end associate
    end function times_of_supports
 
-   !> End of a given step: as late as it is asked for, unless it would jump over a kink of a history of known shape, a
-   !> whole segment of another, or all the time in which a support acts; then where a controlled step would end [s].
-   !> docs/theory/host.md section 4.5.
+   !> Finds the end of a given step: as late as it is asked for, unless it would jump over a kink of a history of known
+   !> shape, a whole segment of another, or all the time in which a support acts; then where a controlled step would end
+   !> [s]. docs/theory/host.md section 4.5.
    pure real(wp) function end_of_given(run, asked) result(until)
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: asked   !< [s]
@@ -91,8 +91,8 @@ contains
       end do
    end function end_of_given
 
-   !> Break of a history up to which a straight line from the present time leaves out no more than a share of its
-   !> range: the one that the line to the horizon misses most, until no line misses one. Huge if there is none. [s]
+   !> Finds the break of a history up to which a straight line from the present time leaves out no more than a share of
+   !> its range: the one that the line to the horizon misses most, until no line misses one. Huge if there is none. [s]
    !> docs/theory/host.md section 4.5.
    pure real(wp) function straight_until(amplitude, now, close, horizon, share) result(until)
       type(amplitude_t), intent(in) :: amplitude
@@ -195,7 +195,7 @@ contains
       end associate
    end function begins_suddenly
 
-   !> 1 for every contact that is closed at given displacements, else 0; 0 too where these are refused.
+   !> Gives 1 for every contact that is closed at given displacements, else 0; 0 too where these are refused.
    function closed_contacts(run, x) result(closed)
       type(run_t), intent(inout) :: run
       real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) [m]
@@ -221,7 +221,7 @@ contains
       end associate
    end function ends_at_closing
 
-   !> The next attempt ends where a contact closes, if that is shorter than what its error asks for. The time is looked
+   !> Ends the next attempt where a contact closes, if that is shorter than what its error asks for. The time is looked
    !> for along the motion that keeps its accelerations: exact for bodies in free flight. Where that motion closes none
    !> the step stays as its error asks for.
    subroutine end_where_it_closes(run)

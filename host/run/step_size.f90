@@ -30,7 +30,7 @@ module step_size
    real(wp), parameter :: FLOOR = 1.0e-9_wp       !< Share of the largest value of a field that is no change of it: less
                                                   !< than its rounding times the condition of a matrix, 1e-16 times 1e7.
 contains
-   !> A stage begins: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
+   !> Begins a stage: scales, and the first step where steps are controlled. docs/theory/host.md section 4.5.
    subroutine begin_control(run)
       type(run_t), intent(inout) :: run
       logical :: anew
@@ -50,7 +50,7 @@ contains
       end associate
    end subroutine begin_control
 
-   !> First step: that of the scene, or a share of the span to the first break of what acts.
+   !> Chooses the first step: that of the scene, or a share of the span to the first break of what acts.
    real(wp) function first_step(run) result(dt)
       type(run_t), intent(in) :: run
       real(wp) :: span, share
@@ -95,7 +95,7 @@ contains
       run%control%memory%known = .false.
    end subroutine sudden
 
-   !> Whether a stage has come to its end. Up to rounding.
+   !> Whether a stage has come to its end, up to rounding.
    pure logical function is_over(run)
       type(run_t), intent(in) :: run
       real(wp) :: rounding
@@ -105,7 +105,7 @@ contains
       is_over = run%at%t_start + run%stage%duration - run%state%time <= rounding
    end function is_over
 
-   !> Length of the next attempt [s]. docs/theory/host.md sections 4.4 and 4.5.
+   !> Chooses the length of the next attempt [s]. docs/theory/host.md sections 4.4 and 4.5.
    real(wp) function next_step(run) result(dt)
       type(run_t), intent(in) :: run
       real(wp) :: left
@@ -128,7 +128,7 @@ contains
       end if
    end function next_step
 
-   !> Changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa]. docs/theory/host.md
+   !> Finds changes of the pressures in a controlled step that its error hides; 0: none is [m, kPa]. docs/theory/host.md
    !> section 5.1.
    pure function negligible_changes(run) result(changes)
       type(run_t), intent(in) :: run
@@ -139,7 +139,7 @@ contains
                                                           *run%control%scale(DISPLACEMENTS + 1:)
    end function negligible_changes
 
-   !> The next of the times that given steps end at [s].
+   !> Finds the next of the times that given steps end at [s].
    pure real(wp) function next_end(run)
       type(run_t), intent(in) :: run
 
@@ -162,7 +162,7 @@ contains
       if (run%stage%controlled) call shift_rates(run%scheme, run%control%memory, run%state)
    end subroutine begin_attempt
 
-   !> After a solution: whether its error lets it stand; the length of the next attempt follows from it.
+   !> Decides after a solution whether its error lets it stand; the length of the next attempt follows from it.
    !> docs/theory/host.md section 4.5. Where steps are given every one stands.
    subroutine judge_step(run, accepted)
       type(run_t), intent(inout) :: run
@@ -249,7 +249,7 @@ contains
       end associate
    end subroutine weigh_error
 
-   !> Root mean square over the nodes; displacements count as one field.
+   !> Takes the root mean square over the nodes; displacements count as one field.
    pure function field_norms(values) result(norms)
       real(wp), intent(in) :: values(:, :)   !< (FIELDS, nodes)
       real(wp) :: norms(FIELDS)
@@ -259,7 +259,7 @@ contains
       norms = sqrt(norms/max(1, size(values, 2)))
    end function field_norms
 
-   !> Largest changes of the fields, that of the step under way among them; not below a share of their values.
+   !> Finds the largest changes of the fields, that of the step under way among them; not below a share of their values.
    pure function scales(run, bodies) result(s)
       type(run_t), intent(in) :: run
       integer, intent(in) :: bodies
@@ -273,8 +273,8 @@ contains
       end associate
    end function scales
 
-   !> After an attempt that failed: the share of it that is tried next becomes the step. docs/theory/host.md section
-   !> 4.4; nothing where steps are given.
+   !> Shortens the step after an attempt that failed: the share of it that is tried next becomes the step.
+   !> docs/theory/host.md section 4.4; nothing where steps are given.
    subroutine shorten_step(run)
       type(run_t), intent(inout) :: run
 
@@ -288,7 +288,7 @@ contains
       run%at%nominal = run%control%controller%dt
    end subroutine shorten_step
 
-   !> After an accepted step, before it is taken over: rates for the next estimate, and what ends with the step.
+   !> Keeps, of an accepted step that is not yet taken over, rates for the next estimate, and what ends with the step.
    !> docs/theory/host.md section 4.5. Where steps are given their length does not follow.
    subroutine keep_step(run)
       type(run_t), intent(inout) :: run

@@ -222,8 +222,8 @@ contains
       end do
    end function freeze_retention
 
-   !> Value of a parameter of MUD, from the group, its file or the library; 0 of other groups, and where the group is
-   !> refused, which is told where the model is built.
+   !> Finds the value of a parameter of MUD, from the group, its file or the library; 0 of other groups, and where the
+   !> group is refused, which is told where the model is built.
    real(wp) function parameter_of(group, name) result(value)
       type(group_t), intent(in) :: group
       character(*), intent(in) :: name

@@ -50,7 +50,7 @@ contains
       arcs = [(ways, i=1, repeats)]
    end subroutine pairs_of_shape
 
-   !> Share of the way from a pair to the next, at a share of the time between them [-].
+   !> Finds the share of the way from a pair to the next, at a share of the time between them [-].
    pure real(wp) function arc_at(arc, x) result(share)
       integer, intent(in) :: arc
       real(wp), intent(in) :: x
@@ -65,7 +65,7 @@ contains
       end select
    end function arc_at
 
-   !> Slope of a history just before (`side` = -1) or after (+1) a pair [1/s]; 0 beyond the ends.
+   !> Finds the slope of a history just before (`side` = -1) or after (+1) a pair [1/s]; 0 beyond the ends.
    pure real(wp) function slope_beside(times, values, arcs, pair, side) result(slope)
       real(wp), intent(in) :: times(:), values(:)   !< [s], [-] (pairs)
       integer, intent(in) :: arcs(:)                !< (pairs - 1), or none: all straight.
@@ -81,7 +81,7 @@ contains
       slope = merge(0.5_wp*PI*slope, 0.0_wp, (arcs(low) == RISING) .eqv. (side < 0))
    end function slope_beside
 
-   !> Where the slope of a history jumps. (pairs)
+   !> Marks the pairs at which the slope of a history jumps. (pairs)
    pure function kinks_of(times, values, arcs) result(kinks)
       real(wp), intent(in) :: times(:), values(:)   !< [s], [-] (pairs)
       integer, intent(in) :: arcs(:)                !< (pairs - 1), or none: all straight.

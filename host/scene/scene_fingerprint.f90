@@ -17,9 +17,9 @@ module scene_fingerprint
    character(*), parameter :: FREE(*) = [character(18) :: 'threads', 'checkpoint_steps', 'checkpoint_seconds', 'goals']
 
 contains
-   !> What tells a scene from others: the fingerprint of its groups, as 16 hexadecimal digits, and two numbers for every
-   !> group, which differ where the group does. A file that cannot be read counts by its name alone. The name of the
-   !> scene is that of a key, which is not read here.
+   !> Makes what tells a scene from others: the fingerprint of its groups, as 16 hexadecimal digits, and two numbers for
+   !> every group, which differ where the group does. A file that cannot be read counts by its name alone. The name of
+   !> the scene is that of a key, which is not read here.
    type(origin_t) function origin_of(file, groups) result(origin)
       character(*), intent(in) :: file
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
@@ -55,7 +55,7 @@ contains
       end do
    end function hash_of
 
-   !> Continues a hash by the characters of a text.
+   !> Adds the characters of a text to a hash.
    pure subroutine add_text(text, hash)
       character(*), intent(in) :: text
       integer(int64), intent(inout) :: hash(2)
@@ -66,7 +66,7 @@ contains
       end do
    end subroutine add_text
 
-   !> Contents of a file, its path seen from the scene. One that cannot be read is refused elsewhere.
+   !> Adds the contents of a file, whose path is seen from the scene. One that cannot be read is refused elsewhere.
    subroutine add_file(scene, path, hash)
       character(*), intent(in) :: scene, path
       integer(int64), intent(inout) :: hash(2)

@@ -18,8 +18,8 @@ module scene_names
    character(*), parameter :: LETTERS = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
    character(*), parameter :: FIT = LETTERS//'0123456789_-.'
 contains
-   !> Of groups whose keys are those of the list. Fault EXIT_INPUT: a name is empty, too long, given twice, or holds
-   !> what no file name should. Fault EXIT_GROUP: a stage that nobody defines.
+   !> Checks the names in groups whose keys are those of the list. Fault EXIT_INPUT: a name is empty, too long, given
+   !> twice, or holds what no file name should. Fault EXIT_GROUP: a stage that nobody defines.
    subroutine check_names(groups, fault)
       type(group_t), intent(in) :: groups(:)   !< (groups of the scene)
       type(fault_t), intent(inout) :: fault

@@ -70,7 +70,7 @@ module scene_parts
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
    end type stage_t
 contains
-   !> "FILE:LINE: " of a group of the scene.
+   !> Says where a group of the scene begins, as "FILE:LINE: ".
    pure function place_of(item) result(place)
       class(scene_item_t), intent(in) :: item
       character(:), allocatable :: place
@@ -78,7 +78,7 @@ contains
       place = at_line(item%file, item%line)
    end function place_of
 
-   !> Factor of an amplitude at a time: straight lines or arcs between its pairs, constant outside. [-]
+   !> Evaluates an amplitude at a time: straight lines or arcs join its pairs, outside it is constant. [-]
    pure real(wp) function amplitude_at(amplitude, time) result(factor)
       type(amplitude_t), intent(in) :: amplitude
       real(wp), intent(in) :: time   !< [s]

@@ -84,7 +84,7 @@ contains
       end function is_meant
    end subroutine apply_settings
 
-   !> Values divided by commas, each in quotes, so that a path needs none. A text that has quotes stays.
+   !> Puts values between commas in quotes, each, so that a path needs none. A text that has quotes stays.
    pure function quoted(values) result(text)
       character(*), intent(in) :: values
       character(:), allocatable :: text

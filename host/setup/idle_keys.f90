@@ -41,7 +41,7 @@ contains
       call warn_of_unused_definitions(keys, scene)
    end subroutine warn_of_idle_keys
 
-   !> The conditions of a key that a group gives.
+   !> Looks at the conditions of a key that a group gives.
    subroutine judge(keys, key, model, group)
       type(key_t), intent(in) :: keys(:), key
       type(model_t), intent(in) :: model
@@ -126,7 +126,7 @@ contains
       end function replaced_everywhere
    end subroutine judge_law
 
-   !> Definitions, of a kind that keys refer to, that no key of the scene names.
+   !> Warns of definitions, of a kind that keys refer to, that no key of the scene names.
    subroutine warn_of_unused_definitions(keys, scene)
       type(key_t), intent(in) :: keys(:)
       type(scene_t), intent(in) :: scene
@@ -164,7 +164,7 @@ contains
       end do
    end function is_referred_to
 
-   !> Name of a group, of laws as well.
+   !> Finds the name of a group, of laws as well.
    pure function name_of(group) result(name)
       type(group_t), intent(in) :: group
       character(:), allocatable :: name

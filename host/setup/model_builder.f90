@@ -30,8 +30,8 @@ module model_builder
    real(wp), parameter :: OF_ELASTIC = 7.0e-6_wp, OF_PLASTIC = 5.0e-5_wp
    real(wp), parameter :: WORTH_A_THREAD = 4.0e-3_wp   !< A slice of Linux' scheduler [s].
 contains
-   !> Group by group, each once what it names is known. Faults: those of the builders of groups and terms, and of the
-   !> checks; EXIT_GROUP: an element of no region; EXIT_ELEMENT: see prepare_domain.
+   !> Builds a model group by group, each once what it names is known. Faults: those of the builders of groups and
+   !> terms, and of the checks; EXIT_GROUP: an element of no region; EXIT_ELEMENT: see prepare_domain.
    subroutine build_model(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(out) :: model
@@ -60,13 +60,13 @@ contains
       if (fault%code == 0) call build_terms(scene, model, fault)
       if (fault%code == 0) call check_actions(model, fault)
       if (fault%code == 0) call check_places(model, fault)
-      if (fault%code == 0) call check_bodies(model, fault)
       if (fault%code == 0) call prepare_domain(model%domain, fault)
       call build('point')
       if (fault%code /= 0) return
       call choose_schemes(model)
       call number_unknowns(model%domain, ties_of(model), model%dofs)
       call integrate_loads(model)
+      call check_bodies(model, fault)
    contains
       subroutine build(name)
          character(*), intent(in) :: name
@@ -102,7 +102,7 @@ contains
       end subroutine build_regions
    end subroutine build_model
 
-   !> Which scene it is of; its lists are empty.
+   !> Notes which scene a model is of; its lists are empty.
    subroutine begin_model(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model

@@ -37,7 +37,7 @@ module scene_keys
       logical :: needed = .false.   !< Without it there is nothing to do.
    end type builder_t
 contains
-   !> All of them but those of terms, in the order of the template.
+   !> Lists all builders but those of terms, in the order of the template.
    subroutine list_builders(list)
       type(builder_t), allocatable, intent(out) :: list(:)
 
@@ -86,7 +86,7 @@ contains
       if (i > 0) call list(i)%build(k, model, fault)
    end subroutine build_group
 
-   !> The keys of all groups in the order of the template, of laws of materials the one that is none of their own.
+   !> Lists the keys of all groups in the order of the template, of laws of materials the one that is none of their own.
    function keys_of_scenes() result(keys)
       type(key_t), allocatable :: keys(:)
       type(key_table_t) :: table
@@ -132,7 +132,7 @@ contains
       end do
    end subroutine check_keys
 
-   !> Fault EXIT_INPUT: a key of other programs or of older scenes, to which the nearest name would mislead.
+   !> Refuses keys of other programs or of older scenes, to which the nearest name would mislead. Fault EXIT_INPUT.
    subroutine refuse_old_keys(group, fault)
       type(group_t), intent(in) :: group   !< &scene.
       type(fault_t), intent(inout) :: fault
@@ -183,7 +183,7 @@ contains
       end do
    end subroutine check_counts
 
-   !> Every key with its default and meaning, as a scene to start from.
+   !> Writes every key with its default and meaning, as a scene to start from.
    subroutine print_template(unit)
       integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(key_t), allocatable :: all_keys(:)

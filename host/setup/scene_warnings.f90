@@ -37,8 +37,8 @@ module scene_warnings
 
    real(wp), parameter :: FAR = huge(1.0_wp)
    real(wp), parameter :: RIGID = 1.0e11_wp   !< [kPa] So stiff a water is meant to be incompressible.
-   ! Densities up to a third of mercury's, of grains up to more than lead's; viscosities up to hundreds of times that of
-   ! water, as in a centrifuge; moduli up to five times that of steel.
+   ! Densities may be a third of mercury's, those of grains more than lead's; viscosities hundreds of times that of
+   ! water, as in a centrifuge; moduli five times that of steel.
    type(usual_t), parameter :: USUAL(*) = [ &
       usual_t('k_w', 10.0_wp, 1.0e7_wp, RIGID, 'a bulk modulus in kPa (water 2.2e6)'), &
       usual_t('rho_w', 0.0_wp, 5.0_wp, FAR, 'a density in Mg/m3 (water 1)'), &
@@ -70,7 +70,7 @@ contains
       call warn_of_idle_keys(scene, model)
    end subroutine warn_of_scene
 
-   !> The unit of length.
+   !> Warns of sizes that suggest another unit of length.
    subroutine look_at_sizes(scene, model)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(in) :: model
@@ -135,7 +135,7 @@ contains
       end do
    end subroutine look_at_regions
 
-   !> Largest side of the box around the elements [m].
+   !> Measures the largest side of the box around the elements [m].
    pure real(wp) function extent(mesh)
       type(mesh_t), intent(in) :: mesh
       integer :: i
@@ -173,7 +173,7 @@ contains
       end do
    end subroutine look_at_initials
 
-   !> An &initial of whose nodes and elements later ones have every one: keys of two do not add up.
+   !> Warns of an &initial of whose nodes and elements later ones have every one: keys of two do not add up.
    subroutine look_at_replaced_initials(model)
       type(model_t), intent(in) :: model
       logical :: nodes(size(model%domain%mesh%x, 2)), elements(size(model%domain%region_of))
@@ -192,7 +192,7 @@ contains
       end do
    end subroutine look_at_replaced_initials
 
-   !> Two contacts of the same two boundaries in one stage, in either order.
+   !> Warns of two contacts of the same two boundaries in one stage, in either order.
    subroutine look_at_doubled_contacts(model)
       type(model_t), intent(in) :: model
       integer :: i, k

@@ -79,7 +79,7 @@ module convergence
       logical :: stagnated = .false.                    !< Accepted at what the stress integration lets Newton reach.
    end type log_t
 contains
-   !> The measure of a stage: what BY_STAGE stands for. docs/theory/host.md section 5.1.
+   !> Finds the measure of a stage: what BY_STAGE stands for. docs/theory/host.md section 5.1.
    pure integer function measure_in(given, inertia, touching) result(measure)
       integer, intent(in) :: given      !< BY_...
       logical, intent(in) :: inertia    !< The stage has accelerations.
@@ -89,7 +89,7 @@ contains
       if (given == BY_STAGE) measure = merge(BY_FORCES, BY_CHANGE, inertia .and. touching)
    end function measure_in
 
-   !> Share of all forces below which no tolerance of a change asks for more. [-] docs/theory/host.md section 5.1.
+   !> Below this share of all forces no tolerance of a change asks for more. [-] docs/theory/host.md section 5.1.
    pure real(wp) function rounding_in(inertia) result(share)
       logical, intent(in) :: inertia   !< The step has accelerations.
 
@@ -161,8 +161,8 @@ contains
                       error <= min(MOST_ROUGH, control%roughness*max(1.0_wp, log%forces_over_scale))
    end subroutine note_stagnation
 
-   !> Scales that the residuals of the fields are small against; rows of prescribed unknowns do not count.
-   !> docs/theory/host.md section 5.1. Of displacements [kN], of pressures [m3/s].
+   !> Finds the scales that the residuals of the fields are small against; rows of prescribed unknowns do not count.
+   !> docs/theory/host.md section 5.1. Those of displacements are in [kN], of pressures in [m3/s].
    pure function field_scales(dofs, constraint, assembly, largest) result(scales)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
@@ -188,7 +188,7 @@ contains
       if (assembly%with_change) magnitudes = assembly%change
    end function measured_by
 
-   !> The water's part of volume balances, in the rows of p_w: these less those of p_c, unless they are it already.
+   !> Takes the water's part of volume balances, in rows of p_w: these less those of p_c, unless they are it.
    pure function water_of(dofs, air, rows) result(water)
       type(dofs_t), intent(in) :: dofs
       logical, intent(in) :: air(:)       !< (nodes) The air pressure is prescribed.
@@ -220,8 +220,8 @@ contains
       end do
    end function has_water
 
-   !> Magnitude that the residual of the water is small against [m3/s]. A flow of air that is much larger has no part in
-   !> it. docs/theory/host.md section 5.1.
+   !> Finds the magnitude that the residual of the water is small against [m3/s]. A flow of air that is much larger has
+   !> no part in it. docs/theory/host.md section 5.1.
    pure real(wp) function water_scale(dofs, constraint, assembly, largest) result(scale)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint
@@ -249,9 +249,9 @@ contains
       is_body = constraint%mass(i) > 0.0_wp .and. .not. constraint%fixed(i)
    end function is_body
 
-   !> Force [kN] that the residual of rigid body i is small against. docs/theory/host.md section 5.1.
-   !> The unknowns of a body are measured by the largest force of them: their units are one, and what
-   !> does not load one of them is in balance with what loads the others.
+   !> Finds the force [kN] that the residual of rigid body i is small against. docs/theory/host.md section 5.1. The
+   !> unknowns of a body are measured by the largest force of them: their units are one, and what does not load one of
+   !> them is in balance with what loads the others.
    pure real(wp) function body_scale(constraint, assembly, largest, i)
       type(constraint_t), intent(in) :: constraint
       type(assembly_t), intent(in) :: assembly
@@ -284,8 +284,8 @@ contains
       norms = sqrt(norms)
    end function norms_of
 
-   !> Errors of the fields. docs/theory/host.md section 5.1. Updates the log: the errors [-], the worst field and its
-   !> worst unknown, the forces.
+   !> Measures the errors of the fields: docs/theory/host.md section 5.1. The log gets them [-], the worst field and its
+   !> worst unknown, and the forces.
    pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
       type(dofs_t), intent(in) :: dofs
       type(constraint_t), intent(in) :: constraint

@@ -44,10 +44,10 @@ module linear_system
       integer :: n_pass = 0
    end type system_t
 contains
-   !> Solution to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
+   !> Solves to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
    !> nothing has been fixed, released or come into contact, otherwise by new ones. docs/theory/host.md section 6.
-   !> status: SOLVED; SINGULAR or FAILED as of factorise; NOT_FINITE as of solve_by_factors. system%indefinite is
-   !> known only of a matrix that was factorised.
+   !> status: SOLVED; SINGULAR or FAILED as of factorise; NOT_FINITE as of solve_by_factors. system%indefinite is known
+   !> only of a matrix that was factorised.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
@@ -102,8 +102,8 @@ contains
       call add_elapsed(system%seconds(T_SOLUTION), t0)
    end subroutine solve_step
 
-   !> Magnitude of the right side of every field, rows of prescribed values included; that of the displacements is one.
-   !> docs/theory/host.md section 5.1.
+   !> Finds the magnitude of the right side of every field, rows of prescribed values included; that of the
+   !> displacements is one. docs/theory/host.md section 5.1.
    pure function asked_for(dofs, rhs) result(magnitude)
       type(dofs_t), intent(in) :: dofs
       real(wp), intent(in) :: rhs(:)   !< (unknowns) [kN, m3/s]

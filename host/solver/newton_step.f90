@@ -116,7 +116,7 @@ contains
       end associate
    end subroutine take_step
 
-   !> An empty log, and room for residual and correction.
+   !> Empties the log, and makes room for residual and correction.
    subroutine begin_iterate(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
@@ -194,7 +194,7 @@ contains
       end do
    end subroutine follow_newton
 
-   !> Largest tolerance of the stress integration; 0 without one. [-] docs/theory/host.md section 5.1.
+   !> Finds the largest tolerance of the stress integration, 0 without one [-]. docs/theory/host.md section 5.1.
    pure real(wp) function roughness(regions)
       type(region_t), intent(in) :: regions(:)
       integer :: i
@@ -338,7 +338,7 @@ contains
       at%with_slopes = .false.
    end subroutine correct
 
-   !> Outcome of a step whose equations were not solved.
+   !> Names the outcome of a step whose equations were not solved.
    pure integer function outcome_of(status)
       integer, intent(in) :: status   !< As solve_step gives it.
 
@@ -378,8 +378,8 @@ contains
       end associate
    end subroutine begin_passes
 
-   !> Error that the rounding of the degree of saturation at both ends of a step leaves of its rate, in the norm of the
-   !> free balances of air [m3/s]. docs/theory/host.md section 5.1.
+   !> Estimates the error that the rounding of the degree of saturation at both ends of a step leaves of its rate, in
+   !> the norm of the free balances of air [m3/s]. docs/theory/host.md section 5.1.
    pure real(wp) function rounding_of_saturation(solution) result(rounding)
       type(solution_t), intent(in) :: solution
       real(wp) :: pores(solution%dofs%n)
@@ -405,9 +405,9 @@ contains
       rounding = epsilon(1.0_wp)/solution%scheme%dt*norm2(pack(pores, .not. solution%constraint%fixed))
    end function rounding_of_saturation
 
-   !> Change of the balances by a rounding of every unknown, by the entries of the matrix: the norms over the free rows
-   !> of every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces. Of
-   !> displacements [kN], of pressures [m3/s]. docs/theory/host.md section 5.1.
+   !> Estimates the change of the balances by a rounding of every unknown from the matrix: norms over the free rows of
+   !> every field. Inertia divides it by dt**2, a rate by dt, and a plate in free flight has no other forces. Those
+   !> of displacements are in [kN], of pressures in [m3/s]. docs/theory/host.md section 5.1.
    pure function rounding_of_unknowns(solution) result(rounding)
       type(solution_t), intent(in) :: solution
       real(wp) :: rounding(FIELDS)
@@ -428,7 +428,7 @@ contains
       rounding = ROUNDINGS*epsilon(1.0_wp)*sqrt(rounding)
    end function rounding_of_unknowns
 
-   !> Rigid bodies, boundaries, contacts and loads beside the elements; the residual, with minus sign, in at%rhs.
+   !> Adds rigid bodies, boundaries, contacts and loads to the elements; at%rhs becomes minus the residual.
    subroutine add_what_acts(scheme, solution, at)
       type(scheme_t), intent(in) :: scheme
       type(solution_t), intent(inout) :: solution
@@ -467,9 +467,9 @@ contains
       end associate
    end subroutine add_what_acts
 
-   !> Accelerations that the loads and stresses of a state ask for, its displacements, velocities and pressures held.
-   !> docs/theory/host.md section 4.1. Into `a` of both states, which are equal [m/s2]. Outcomes as of take_step, but
-   !> for NOT_CONVERGED.
+   !> Solves for the accelerations that the loads and stresses of a state ask for, its displacements, velocities and
+   !> pressures held: docs/theory/host.md section 4.1. They go into `a` of both states, which are equal [m/s2]. Outcomes
+   !> are those of take_step, but for NOT_CONVERGED.
    subroutine start_accelerations(solution)
       type(solution_t), intent(inout) :: solution
       type(constraint_t) :: held
@@ -515,8 +515,8 @@ contains
       end associate
    end subroutine start_accelerations
 
-   !> Forces on the free displacements that the loads of a state at rest leave without balance: those that act at once.
-   !> docs/theory/host.md section 4.4. False where the material or a contact refuses the state.
+   !> Finds the forces on the free displacements that the loads of a state at rest leave without balance: those that act
+   !> at once. docs/theory/host.md section 4.4. False where the material or a contact refuses the state.
    logical function unbalanced_forces(solution, forces) result(good)
       type(solution_t), intent(inout) :: solution   !< Both states are equal; load_0 are the loads, load_1 become them.
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
@@ -537,7 +537,7 @@ contains
       end associate
    end function unbalanced_forces
 
-   !> Inertia of rigid bodies, and the forces of terms.
+   !> Adds the inertia of rigid bodies, and the forces of terms.
    subroutine add_forces(scheme, slopes, solution)
       type(scheme_t), intent(in) :: scheme
       logical, intent(in) :: slopes

@@ -92,7 +92,7 @@ module sparse_factors
       end subroutine umfpack_di_free_numeric
    end interface
 contains
-   !> Ordering, once per pattern and by the pattern alone: a run that is taken up again finds the same one.
+   !> Orders the equations once per pattern and by the pattern alone: a run that is taken up again finds the same one.
    !> docs/theory/host.md section 6. Earlier factors are freed. status: SOLVED or FAILED.
    subroutine analyse(sparse, row, col, status)
       type(sparse_t), intent(inout) :: sparse
@@ -110,7 +110,7 @@ contains
                                                          c_null_ptr, sparse%symbolic, sparse%control, sparse%info) == 0)
    end subroutine analyse
 
-   !> Numeric factors of the matrix with these values; status SOLVED, SINGULAR or FAILED. SINGULAR: a pivot is 0 or the
+   !> Factorises the matrix with these values; status is SOLVED, SINGULAR or FAILED. SINGULAR: a pivot is 0 or the
    !> smallest is below 1e-13 of the largest (docs/theory/host.md section 6); FAILED: any other refusal of UMFPACK, as
    !> by lack of memory. An odd number of negative real eigenvalues makes sparse%indefinite true; a stable soil has
    !> none, also with pore pressures (docs/theory/host.md section 5.3). To be called after analyse.
@@ -141,8 +141,8 @@ contains
       sparse%n_numeric = sparse%n_numeric + 1
    end subroutine factorise
 
-   !> x with |W (b - A x)| <= target, W = diag(weight), in at most `most` steps. After INACCURATE x is the best found;
-   !> after another it is of no use.
+   !> Finds x with |W (b - A x)| <= target, W = diag(weight), in at most `most` steps. After INACCURATE x is the best
+   !> found; after another it is of no use.
    subroutine solve_by_factors(sparse, values, b, weight, target, most, x, steps, status)
       type(sparse_t), intent(inout) :: sparse
       real(wp), intent(in) :: values(:), b(:), weight(:)   !< (entries) of A; (n); (n), > 0.
@@ -201,7 +201,7 @@ contains
       sparse%n_solve = sparse%n_solve + 1
    end subroutine backsolve
 
-   !> y = A x.
+   !> Multiplies: y = A x.
    pure subroutine times(sparse, values, x, y)
       type(sparse_t), intent(in) :: sparse
       real(wp), intent(in) :: values(:), x(:)   !< (entries) of A; (n).

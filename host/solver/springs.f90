@@ -70,8 +70,8 @@ contains
       end do
    end subroutine add_linear_forces
 
-   !> Energy that dashpots take out of a step, or springs store in it, by the mean at its ends, at given displacements
-   !> [kJ]. docs/theory/host.md section 9. Outflow does no work.
+   !> Finds the energy that dashpots take out of a step, or springs store in it, by the mean at its ends, at given
+   !> displacements [kJ]. docs/theory/host.md section 9. Outflow does no work.
    pure real(wp) function work_of_linear_forces(list, by_rates, dofs, old, new, change) result(work)
       type(linear_forces_t), intent(in) :: list(:)
       logical, intent(in) :: by_rates   !< Dashpots, else springs.
@@ -99,8 +99,8 @@ contains
       end do
    end function work_of_linear_forces
 
-   !> Water that has left in a step through dashpots that act [m3], in proportion to the changes of the pressures. The
-   !> row of p_w is that of both fluids, but for nodes whose air pressure is prescribed.
+   !> Sums the water that has left in a step through dashpots that act [m3], in proportion to the changes of the
+   !> pressures. The row of p_w is that of both fluids, but for nodes whose air pressure is prescribed.
    pure real(wp) function water_through_dashpots(list, dofs, air, change) result(water)
       type(linear_forces_t), intent(in) :: list(:)
       type(dofs_t), intent(in) :: dofs
@@ -197,7 +197,7 @@ contains
       end do
    end subroutine add_mean_of_springs
 
-   !> By how much, and how fast, the ends have come nearer than the clearance [m, m/s].
+   !> Finds by how much, and how fast, the ends have come nearer than the clearance [m, m/s].
    pure subroutine shortening(one, dofs, state, u, v)
       type(spring_t), intent(in) :: one
       type(dofs_t), intent(in) :: dofs
@@ -223,7 +223,7 @@ contains
       if (.not. may_push .and. scheme%l_f > 0.0_wp) may_push = u + scheme%dt*v > 0.0_wp
    end function may_push
 
-   !> Force between the ends, pushing positive; none where they are apart [kN].
+   !> Finds the force between the ends, pushing positive; none where they are apart [kN].
    pure real(wp) function force_at(one, scheme, u, v) result(force)
       type(spring_t), intent(in) :: one
       type(scheme_t), intent(in) :: scheme
@@ -233,7 +233,7 @@ contains
       if (one%pulls .or. u > 0.0_wp) force = push(one, scheme, u, v)
    end function force_at
 
-   !> Force between ends that have met, pushing positive [kN].
+   !> Finds the force between ends that have met, pushing positive [kN].
    pure real(wp) function push(one, scheme, u, v) result(force)
       type(spring_t), intent(in) :: one
       type(scheme_t), intent(in) :: scheme

@@ -68,8 +68,8 @@ module surface_forces
          character(:), allocatable :: text
       end function message_i
 
-      !> Forces at given displacements, to be added to the internal ones; false where these are refused. The outcome of
-      !> the last evaluation stays.
+      !> Finds the forces at given displacements, to be added to the internal ones; false where these are refused. The
+      !> outcome of the last evaluation stays.
       logical function forces_i(self, dofs, x, force) result(good)
          import :: surface_forces_t, dofs_t, wp
          class(surface_forces_t), intent(inout) :: self

@@ -141,8 +141,8 @@ contains
       end function are_alike
    end subroutine build
 
-   !> A boundary whose motion along its normal is prescribed, and that brings no wave along the other axis; or along
-   !> whose wave the motion is.
+   !> Warns of a boundary whose motion along its normal is prescribed, and that brings no wave along the other axis; or
+   !> along whose wave the motion is.
    subroutine look_at_supports(model, side)
       type(model_t), intent(in) :: model
       type(side_t), intent(in) :: side
@@ -171,7 +171,7 @@ contains
       end associate
    end subroutine look_at_supports
 
-   !> Room for the dashpots of the boundaries, and the unknowns that they hold.
+   !> Makes room for the dashpots of the boundaries, and the unknowns that they hold.
    subroutine begin_run(self, problem, fault)
       class(absorbing_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
@@ -195,7 +195,7 @@ contains
       end do
    end subroutine begin_run
 
-   !> Dashpots of a boundary of the ground behind it. docs/theory/host.md section 7.4.
+   !> Makes dashpots of a boundary from the ground behind it. docs/theory/host.md section 7.4.
    subroutine make_dashpots(model, side, dashpots)
       type(model_t), intent(in) :: model
       type(side_t), intent(inout) :: side
@@ -216,7 +216,7 @@ contains
       end do
    end subroutine make_dashpots
 
-   !> Impedances: those of the scene, or of the element that the edge belongs to, mean of its points. Fault
+   !> Finds the impedances: those of the scene, or of the element that the edge belongs to, mean of its points. Fault
    !> EXIT_MATERIAL: the ground has no stiffness, or its material refuses its own state.
    subroutine ground_behind(problem, side, e, ground, fault)
       type(problem_t), intent(in), target :: problem
@@ -283,7 +283,7 @@ contains
       end associate
    end subroutine ground_behind
 
-   !> What fluids that cannot leave add to the constrained modulus [kPa].
+   !> Finds what fluids that cannot leave add to the constrained modulus [kPa].
    pure real(wp) function pore_stiffness(domain, n, s, slope) result(stiffness)
       type(domain_t), intent(in) :: domain
       real(wp), intent(in) :: n, s, slope   !< Porosity, saturation, its change with suction [1/kPa].
@@ -305,7 +305,7 @@ contains
       end associate
    end function pore_stiffness
 
-   !> Dashpots of an edge: integrals of N_i N_j with the impedances along its normal and tangent.
+   !> Adds the dashpots of an edge: integrals of N_i N_j with the impedances along its normal and tangent.
    subroutine add_edge(model, edge, ground, one)
       type(model_t), intent(in) :: model
       integer, intent(in) :: edge(3)
@@ -385,8 +385,8 @@ contains
       end do
    end subroutine begin_stage
 
-   !> Which sides act, and the forces of the waves that come in. Where a stage begins those that have not acted before
-   !> hold what the ground behind them has held so far.
+   !> Sets which sides act, and the forces of the waves that come in. Where a stage begins those that have not acted
+   !> before hold what the ground behind them has held so far.
    subroutine before_step(self, dt, problem, fault)
       class(absorbing_t), intent(inout) :: self
       real(wp), intent(in) :: dt
@@ -515,7 +515,8 @@ contains
       end associate
    end subroutine share_forces
 
-   !> Forces of the total stress of the elements behind a side, mean of their points, on its edges [kN]. (unknowns)
+   !> Sums the forces of the total stress of the elements behind a side, mean of their points, on its edges [kN].
+   !> (unknowns)
    function tractions(problem, side) result(force)
       type(problem_t), intent(in) :: problem
       type(side_t), intent(in) :: side

@@ -29,9 +29,9 @@ module contact_drainage
 
    real(wp), parameter :: HALF = 0.5_wp*(1 - 1.0e-9_wp)   !< Up to rounding: half an edge may lie exactly opposite.
 contains
-   !> Which &fix give way to a contact: those that prescribe a pressure on all nodes of an edge of the slave. Fault
-   !> EXIT_INPUT: the scene has no pressures, rain falls on the slave, or a contact whose drainage follows its state has
-   !> no such &fix.
+   !> Finds which &fix give way to a contact: those that prescribe a pressure on all nodes of an edge of the slave.
+   !> Fault EXIT_INPUT: the scene has no pressures, rain falls on the slave, or a contact whose drainage follows its
+   !> state has no such &fix.
    subroutine build_group(self, k, number, model, fault)
       class(contact_drainage_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
@@ -73,8 +73,8 @@ contains
          'and there is none; prescribe the pressures on the whole boundary, or leave drainage out.')
    end subroutine build_group
 
-   !> The impervious nodes at the displacements that the step starts from. What the last evaluation of the contacts left
-   !> behind stays. docs/theory/contact.md section 5. Fault EXIT_CONVERGENCE: a kernel refuses the displacements.
+   !> Marks nodes that are impervious where the step starts from. What the last evaluation of the contacts left behind
+   !> stays. docs/theory/contact.md section 5. Fault EXIT_CONVERGENCE: a kernel refuses the displacements.
    subroutine before_step(self, dt, problem, fault)
       class(contact_drainage_t), intent(inout) :: self
       real(wp), intent(in) :: dt

@@ -21,7 +21,7 @@ module friction
       procedure :: build_group, before_step, accept, exchange
    end type friction_t
 contains
-   !> The options of a contact. Raises no fault.
+   !> Sets the options of a contact. Raises no fault.
    subroutine build_group(self, k, number, model, fault)
       class(friction_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
@@ -55,7 +55,7 @@ contains
       end select
    end subroutine before_step
 
-   !> The tractions at the end of the step, and what sliding has dissipated.
+   !> Takes over the tractions at the end of the step, and what sliding has dissipated.
    subroutine accept(self, problem, dissipated)
       class(friction_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem

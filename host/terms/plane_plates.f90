@@ -83,8 +83,8 @@ contains
       end associate
    end subroutine build_group
 
-   !> Gives supports and loads their rotation; a body with other unknowns is all that a run sees. Fault EXIT_INPUT: a
-   !> rotation or moment of something else.
+   !> Gives supports and loads their rotation; a body with other unknowns is all that a run sees. Fault EXIT_INPUT:
+   !> something else has a rotation or moment.
    subroutine build(self, model, fault)
       class(plane_plates_t), intent(inout) :: self
       type(model_t), intent(inout) :: model

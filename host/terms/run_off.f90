@@ -35,7 +35,7 @@ module run_off
       procedure :: build_group, build, before_step, limit, choose, accept
    end type run_off_t
 contains
-   !> The pond of a load that is rain. Raises no fault.
+   !> Reads the pond of a load that is rain. Raises no fault.
    subroutine build_group(self, k, number, model, fault)
       class(run_off_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
@@ -52,8 +52,8 @@ contains
       if (model%loads(number)%limits) self%ponding(number) = ponding
    end subroutine build_group
 
-   !> Seepage faces and rain of a model. Fault EXIT_INPUT: keys that contradict each other, rain that is drawn up, or a
-   !> pond without weight.
+   !> Checks seepage faces and rain of a model. Fault EXIT_INPUT: keys contradict each other, rain is drawn up, or a
+   !> pond has no weight.
    subroutine build(self, model, fault)
       class(run_off_t), intent(inout) :: self
       type(model_t), intent(inout) :: model
@@ -101,7 +101,7 @@ contains
       end if
    end subroutine check_rain
 
-   !> The rain among the loads at both ends of the step, of which a limit may refuse a part.
+   !> Notes the rain among the loads at both ends of the step, of which a limit may refuse a part.
    subroutine before_step(self, dt, problem, fault)
       class(run_off_t), intent(inout) :: self
       real(wp), intent(in) :: dt
@@ -112,7 +112,7 @@ contains
       problem%constraint%offered_1 = rain_at(problem, problem%state%time + dt)
    end subroutine before_step
 
-   !> The rain of the stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
+   !> Sums the rain of the stage at a time, before what runs off [m3/s]. (unknowns) docs/theory/host.md section 7.7.
    pure function rain_at(problem, time) result(rain)
       type(problem_t), intent(in) :: problem
       real(wp), intent(in) :: time   !< [s]
@@ -128,8 +128,8 @@ contains
       end do
    end function rain_at
 
-   !> Largest water pressures of seepage faces, and under rain those of its pond; of several the smallest counts, whose
-   !> group has the run-off. What is prescribed has no limit. docs/theory/host.md section 7.7.
+   !> Sets the largest water pressures of seepage faces, and under rain those of its pond; of several the smallest
+   !> counts, whose group has the run-off. What is prescribed has no limit. docs/theory/host.md section 7.7.
    subroutine limit(self, time, problem)
       class(run_off_t), intent(inout) :: self
       real(wp), intent(in) :: time
@@ -196,9 +196,9 @@ contains
       end associate
    end subroutine begin_sides
 
-   !> The sides after an iteration. An unknown is held where r + c (x - limit) > 0, r the reaction that its limit asks
-   !> for and c the slope of its balance, and free elsewhere; what is smaller than the balance is known to leaves it as
-   !> it is. One that was released too often keeps its limit and is noted.
+   !> Chooses the sides after an iteration. An unknown is held where r + c (x - limit) > 0, with the reaction r that its
+   !> limit asks for and the slope c of its balance, and free elsewhere; what is smaller than the balance is known to
+   !> leaves it as it is. One that was released too often keeps its limit and is noted.
    subroutine choose(self, problem, residual, changed)
       class(run_off_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem

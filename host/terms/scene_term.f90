@@ -26,7 +26,7 @@ contains
       type(fault_t), intent(inout) :: fault
    end subroutine build_group
 
-   !> After the groups. Faults: as of build_group.
+   !> Does what is left to do after the groups. Faults are as those of build_group.
    subroutine build(self, model, fault)
       class(scene_term_t), intent(inout) :: self
       type(model_t), intent(inout) :: model

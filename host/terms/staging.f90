@@ -28,7 +28,7 @@ module staging
       procedure :: build_group, build, begin_run, begin_stage, before_step, prescribe
    end type staging_t
 contains
-   !> Which elements of a region the stages have. Raises no fault.
+   !> Notes which elements of a region the stages have. Raises no fault.
    subroutine build_group(self, k, number, model, fault)
       class(staging_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k
@@ -92,7 +92,7 @@ contains
       end do
    end subroutine check_start
 
-   !> The elements of the first stage, of which none joins.
+   !> Sets the elements of the first stage, of which none joins.
    subroutine begin_run(self, problem, fault)
       class(staging_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
@@ -102,8 +102,8 @@ contains
       problem%state%joins = spread(.false., 1, size(problem%state%present))
    end subroutine begin_run
 
-   !> The elements of a stage, which join with it and which leave, and the forces that those held up; where a run is
-   !> taken up within the stage, from the unknowns at its start. docs/theory/host.md section 14. Fault EXIT_MATERIAL:
+   !> Sets the elements of a stage, which join with it and which leave, and the forces that those held up; where a run
+   !> is taken up within the stage, from the unknowns at its start. docs/theory/host.md section 14. Fault EXIT_MATERIAL:
    !> the material of an element that leaves refuses its own state at rest.
    subroutine begin_stage(self, begins, problem, fault)
       class(staging_t), intent(inout) :: self
@@ -129,8 +129,8 @@ contains
       end associate
    end subroutine begin_stage
 
-   !> What the elements that leave hold up on the nodes around them: their internal forces and weight where the stage
-   !> begins. Their points stand still, so that a run that is taken up finds the same.
+   !> Finds what the elements that leave hold up on the nodes around them: their internal forces and weight where the
+   !> stage begins. Their points stand still, so that a run that is taken up finds the same.
    subroutine find_held_up(self, stays, problem, fault)
       class(staging_t), intent(inout) :: self
       logical, intent(in) :: stays(:)      !< (elements) Or has not been there.
@@ -160,7 +160,7 @@ contains
       where (problem%dofs%field <= DISPLACEMENTS) self%held_up = assembly%residual
    end subroutine find_held_up
 
-   !> Unknowns that elements have, but none that is present.
+   !> Marks unknowns that elements have, but none that is present.
    pure subroutine mark_absent(dofs, present, absent)
       type(dofs_t), intent(in) :: dofs
       logical, intent(in) :: present(:)   !< (elements)

@@ -113,7 +113,7 @@ contains
       end do
    end subroutine check_law
 
-   !> The laws of a stage at its start.
+   !> Makes the laws of a stage at its start.
    subroutine begin_stage(self, begins, problem, fault)
       class(strength_t), intent(inout) :: self
       logical, intent(in) :: begins
@@ -124,7 +124,7 @@ contains
       call change_laws(self%changes, problem%model, problem%at%t_start, problem%at%t_start, problem%next, changes)
    end subroutine begin_stage
 
-   !> The laws of a step. Slopes that were carried along know nothing of a strength that changes.
+   !> Makes the laws of a step. Slopes that were carried along know nothing of a strength that changes.
    subroutine before_step(self, dt, problem, fault)
       class(strength_t), intent(inout) :: self
       real(wp), intent(in) :: dt
@@ -160,7 +160,7 @@ contains
       end do
    end function remark
 
-   !> The laws of a step, which ends with the state `next`.
+   !> Makes the laws of a step, which ends with the state `next`.
    subroutine change_laws(list, model, from, until, next, changes)
       type(change_t), intent(in) :: list(:)
       type(model_t), intent(in) :: model

@@ -29,7 +29,7 @@ module term_registry
       class(scene_term_t), allocatable :: term
    end type registered_t
 contains
-   !> All of them, unbuilt, in the order in which they act.
+   !> Lists all of them, unbuilt, in the order in which they act.
    subroutine list_terms(list)
       type(registered_t), allocatable, intent(out) :: list(:)
 
@@ -56,7 +56,7 @@ contains
       end subroutine add
    end subroutine list_terms
 
-   !> Names of groups of a scene, those of others and those that belong to terms alone.
+   !> Lists names of groups of a scene, those of others and those that belong to terms alone.
    function with_own_groups(others) result(names)
       character(GROUP_LENGTH), intent(in) :: others(:)
       character(GROUP_LENGTH), allocatable :: names(:)
@@ -84,7 +84,7 @@ contains
       end do
    end subroutine declare_keys
 
-   !> Gives a model the terms that its scene asks for. Faults: theirs.
+   !> Gives a model the terms that its scene asks for. Faults are theirs.
    subroutine build_terms(scene, model, fault)
       type(scene_t), intent(in) :: scene
       type(model_t), intent(inout) :: model

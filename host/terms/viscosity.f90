@@ -21,7 +21,7 @@ module viscosity
       procedure :: build_group
    end type viscosity_t
 contains
-   !> What the points of a region have against the rate of strain, which is all that a run sees. Raises no fault.
+   !> Reads what the points of a region have against the rate of strain, which is all that a run sees. Raises no fault.
    subroutine build_group(self, k, number, model, fault)
       class(viscosity_t), intent(inout) :: self
       type(key_table_t), intent(inout) :: k

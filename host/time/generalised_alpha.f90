@@ -37,8 +37,8 @@ contains
       is_flow = analysis%has_rates .and. .not. analysis%has_inertia
    end function is_flow
 
-   !> Coefficients of a step of an analysis. Chung & Hulbert (1993), Jansen et al. (2000):
-   !> docs/theory/host.md section 4.1, gamma_1 section 4.2.
+   !> Finds the coefficients of a step of an analysis by Chung & Hulbert (1993) and Jansen et al. (2000):
+   !> docs/theory/host.md section 4.1; section 4.2 has gamma_1.
    pure function make_scheme(analysis, rho_inf, dt, begins) result(scheme)
       class(analysis_t), intent(in) :: analysis
       real(wp), intent(in) :: rho_inf   !< 0 to 1
@@ -71,8 +71,8 @@ contains
       scheme%c_a = scheme%l_a/(scheme%beta*dt**2)
    end function make_scheme
 
-   !> First guess of the new values: constant acceleration, constant pressure rates; or, with `no_predictor`, no change.
-   !> docs/theory/host.md section 4.1.
+   !> Makes a first guess of the new values: constant acceleration, constant pressure rates; or, with `no_predictor`, no
+   !> change. docs/theory/host.md section 4.1.
    pure subroutine predict(scheme, no_predictor, x0, v0, a0, x1)
       type(scheme_t), intent(in) :: scheme
       logical, intent(in) :: no_predictor
@@ -86,8 +86,8 @@ contains
       if (scheme%has_inertia) x1(1:2, :) = x1(1:2, :) + 0.5_wp*scheme%dt**2*a0
    end subroutine predict
 
-   !> New rates and accelerations that belong to new values. docs/theory/host.md sections 4.1 and 4.2; 0 in static
-   !> steps. x, v: (FIELDS, nodes) [m, kPa] and [m/s, kPa/s]; a: (2, nodes) [m/s2], 0 in quasi-static steps.
+   !> Finds the new rates and accelerations that belong to new values. docs/theory/host.md sections 4.1 and 4.2; 0 in
+   !> static steps. x, v: (FIELDS, nodes) [m, kPa] and [m/s, kPa/s]; a: (2, nodes) [m/s2], 0 in quasi-static steps.
    pure subroutine advance_rates(scheme, x0, v0, a0, x1, v1, a1)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: x0(:, :), v0(:, :), a0(:, :), x1(:, :)
@@ -104,8 +104,8 @@ contains
       end associate
    end subroutine advance_rates
 
-   !> First-order rate at the end of the step. docs/theory/host.md section 4.2; 0 in static steps. x: values at the ends
-   !> of the step, v0: rate at its start [unit of x per s].
+   !> Finds the first-order rate at the end of the step. docs/theory/host.md section 4.2; 0 in static steps. x: values
+   !> at the ends of the step, v0: rate at its start [unit of x per s].
    elemental real(wp) function rate_of(scheme, x0, v0, x1)
       type(scheme_t), intent(in) :: scheme
       real(wp), intent(in) :: x0, v0, x1

@@ -26,7 +26,7 @@ module step_control
       logical :: held = .false.         !< The last attempt was rejected: no growth.
    end type controller_t
 contains
-   !> A controller before its first step.
+   !> Makes a controller before its first step.
    pure function new_controller(dt) result(controller)
       real(wp), intent(in) :: dt   !< First step [s].
       type(controller_t) :: controller
@@ -46,8 +46,8 @@ contains
    end subroutine exchange_controller
 
    !> Whether a step stands, and the length of the next attempt. A ratio below zero says that nothing is known of the
-   !> error: the step stands and the next is no longer. Gustafsson (1991), Soderlind (2003): docs/theory/host.md section
-   !> 4.5.
+   !> error: the step stands and the next is no longer. The controller is by Gustafsson (1991) and Soderlind (2003):
+   !> docs/theory/host.md section 4.5.
    pure subroutine judge(controller, dt, ratio, accepted)
       type(controller_t), intent(inout) :: controller
       real(wp), intent(in) :: dt   !< Step that was tried; shorter than asked where it had to end at a given time [s].

@@ -60,7 +60,7 @@ def test_what_is_refused():
              "&load group='p' kind='moment' value=1 /\n", 2, ("'p' is none",)),
             ("a plate that nothing holds along r", GROUND + FREE.format(more="") + PUSH
              + "&contact name='c' slave='top' master='raft' /\n", 13,
-             ("against moving along r (x)", "give one friction")),
+             ("against moving along r (x)", "with friction along a plate")),
             ("a body that nothing holds against turning", GROUND.replace("'bottom'", "'raft'")
              + TIED.format(more="") + PUSH, 13, ("against turning",))):
         done = start("refused", text, "--check")

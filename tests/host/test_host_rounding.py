@@ -69,7 +69,7 @@ def test_the_advice_on_a_plate_without_weight_leads_to_its_settlement():
 """
     touching = start("touching", loaded.format(z=1.5))
     check("a plate that only touches: the way out is told", touching.returncode == 13
-          and "contact alone holds the plate 'p', and surfaces that only touch hold nothing" in touching.stderr
+          and "contact alone holds the body of plate p, and surfaces that only touch hold nothing" in touching.stderr
           and "overlap by a millionth of an edge" in touching.stderr, touching.stderr)
     deep = start("deep", loaded.format(z=1.499))
     told = re.search(r"until they overlap by no more than (\S+) m", deep.stderr)

@@ -426,7 +426,8 @@ def test_the_regions_are_there():
         check(f"order {name} runs", done.returncode == 0, done.stderr)
     check("the region without a group has the rest, wherever it stands",
           (work / "one/histories.csv").read_bytes() == (work / "two/histories.csv").read_bytes())
-    refused("a body without a support", FREE, 13, "Stage push: nothing holds the body with the groups 'bottom'", "u_r")
+    refused("a body without a support", FREE, 13, "Stage push: nothing holds the body of node 1 of element 1, (0, 0) m",
+            "u_r")
     refused("a body that slides", FREE + LEFT, 13, "against moving along z (y)")
     refused("a body that slides sideways", FREE + BOTTOM, 13, "against moving along r (x)")
     refused(
@@ -439,7 +440,7 @@ def test_the_regions_are_there():
     refused("a body that turns about a corner", pinned, 13, "against turning; add a &fix of u_z or u_r")
     check("held at a third line it does not turn", warnings(pinned + LEFT, "--check") == [], pinned)
     refused("a plate without a contact", FREE + LEFT + BOTTOM + "&plate name = 'p' r = 0, 1 z = 2 mass = 1 /\n", 13,
-            "nothing holds the plate 'p'")
+            "nothing holds the body of plate p")
     # Two plates on one boundary would be one body with one mass: that of one of them would be lost.
     lid = "&plate name = 'lid' group = 'top' mass = 1 /\n"
     for group in ("top", "right"):
