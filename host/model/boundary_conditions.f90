@@ -8,7 +8,7 @@ module boundary_conditions
       SPACINGS
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: PRESCRIBED_P_A
-   use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
+   use unknown_fields, only: AT_U_R, AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
    public :: new_constraint, constrain_step, complete_constraint, acts, follow_accelerations, &
@@ -16,6 +16,7 @@ module boundary_conditions
    public :: load_at, force_of, plate_loads
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
+   real(wp), parameter :: ON_AXIS = 1.0e-9_wp     !< Share of the largest radius that is none.
 contains
    !> Makes a constraint that prescribes and loads nothing; plates have their mass. Extents: see constraint_t.
    function new_constraint(model) result(constraint)
@@ -50,8 +51,9 @@ contains
       real(wp) :: factors(size(problem%model%fixes))
 
       call prescribing_fixes(problem, time, by, air_by)
-      associate (z => problem%model%domain%mesh%x(2, :), model => problem%model, dofs => problem%model%dofs, &
-                 constraint => problem%constraint, x_start => problem%at%x_start)
+      associate (r => problem%model%domain%mesh%x(1, :), z => problem%model%domain%mesh%x(2, :), &
+                 model => problem%model, dofs => problem%model%dofs, constraint => problem%constraint, &
+                 x_start => problem%at%x_start, axis => ON_AXIS*maxval(problem%model%domain%mesh%x(1, :)))
          factors = [(factor_at(model, model%fixes(i)%amplitude, time), i=1, size(factors))]
          constraint%fixed = by > 0
          constraint%air = air_by > 0
@@ -61,6 +63,12 @@ contains
                constraint%target(i) = value_at(fix, z(dofs%node(i)))*factors(by(i))
                if (fix%hold) constraint%target(i) = x_start(fix%field, dofs%node(i))
             end associate
+         end do
+         ! In axial symmetry nothing leaves the axis.
+         do i = 1, merge(size(by), 0, model%domain%axisymmetric)
+            if (by(i) > 0 .or. dofs%field(i) /= AT_U_R .or. r(dofs%node(i)) > axis) cycle
+            constraint%fixed(i) = .true.
+            constraint%target(i) = 0.0_wp
          end do
          do i = 1, size(air_by)
             if (air_by(i) == 0) cycle

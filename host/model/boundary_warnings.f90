@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings about supports, loads and histories of a scene that are allowed but usually mistakes.
 module boundary_warnings
-   use acting_places, only: given_in
+   use acting_places, only: given_in, acting_stages
    use kinds, only: wp
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
@@ -166,7 +166,8 @@ contains
       end do
    end subroutine look_at_histories
 
-   !> Supports of pressures and inflows that act on a part of their group alone, or in static stages alone.
+   !> Supports of pressures and inflows that act on a part of their group alone, or in static stages alone; dashpots and
+   !> accelerations without a dynamic stage.
    subroutine look_at_places(model)
       type(model_t), intent(in) :: model
       logical :: flows(size(model%domain%mesh%x, 2))
@@ -175,6 +176,9 @@ contains
       flows = nodes_with_flow(model%domain)
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
+            if (one%acceleration .and. .not. any(one%in_stage .and. model%stages%has_inertia)) call print_warning( &
+               place_of(one)//'the acceleration has no effect: no stage in which it acts is dynamic, and elsewhere '// &
+               'the nodes stay.')
             if (one%field <= DISPLACEMENTS) cycle
             call look_at_stages(one, PRESCRIBED_WORDS(one%field))
             if (.not. all(flows(nodes))) call print_warning(place_of(one)// &
@@ -192,6 +196,12 @@ contains
                   whole(count(edges))//' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)// &
                   ''': the others belong to no region with drainage = ''coupled''.')
             end associate
+         end associate
+      end do
+      do i = 1, size(model%actions)
+         associate (one => model%actions(i))
+            if (one%damps .and. .not. any(acting_stages(model, one))) call print_warning(place_of(one)// &
+               trim(one%what)//' has no effect: no stage in which it acts is dynamic.')
          end associate
       end do
    contains

@@ -12,6 +12,7 @@ module scene_warnings
    use material_point, only: untested
    use model_types, only: model_t
    use namelists, only: group_t
+   use porous_domain, only: UNDRAINED
    use scene_parts, only: place_of
    use scene_types, only: scene_t, groups_named, item_of
    use start_look, only: warn_of_start
@@ -127,6 +128,10 @@ contains
             if (used%outside_e > 0 .or. used%outside_p > FEW*used%points) call print_warning(place//' begins '// &
                'outside what it was fitted to at '//whole(max(used%outside_e, used%outside_p))//' of '// &
                whole(used%points)//' points: '//untested(law, used%e, used%p)//'.')
+            if (model%domain%regions(i)%drainage == UNDRAINED .and. .not. any(model%stages%has_rates)) &
+               call print_warning(place_of(given)//'the region '''//trim(given%group_name)//''' keeps its fluids '// &
+                                  '(drainage = ''undrained''), but every stage is static, where pressures stay: it '// &
+                                  'answers as drained ground; analysis = ''quasi_static'' of &stage lets them rise.')
             if (any(model%regions(:i - 1)%material_name == given%material_name)) cycle
             if (law%doubt /= '') call print_warning(trim(law%doubt))
             if (law%unit%name /= KILOPASCAL%name) call print_warning(place//' has a p_atm of '// &

@@ -113,6 +113,11 @@ DOUBTS = [
      ["hostun_hysteresis.nml:35: P_aw has no effect with hysteresis = 0"]),
     ("pressure of a static stage", "'quasi_static'", "'static'",
      ["scene.nml:16: p_w has no effect: the stages in which it acts are static"]),
+    ("dashpots of a static stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"
+     "&absorbing group = 'right' stages = 'rest' /\n&load", ["&absorbing has no effect: no stage in which it acts"]),
+    ("acceleration without a dynamic stage", "'left' field = 'u_r'",
+     "'left' field = 'u_r' motion = 'acceleration' value = 1 history = 'h'",
+     ["scene.nml:12: the acceleration has no effect: no stage in which it acts"]),
     ("inflow of a static stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"
      "&load group = 'top' kind = 'water' value = 1e-6 stages = 'rest' /\n&load",
      ["the inflow has no effect: the stages in which it acts are static"]),
@@ -247,6 +252,13 @@ def test_no_doubt_no_warning():
             text = SCENE.replace(old, new)
         told = warnings(text, "--check")
         check(what, any(all(word in line for word in words) for line in told), told)
+
+    # Fluids that cannot leave answer in time alone.
+    closed = SCENE.replace("void_ratio = 0.1 permeability = 'k'", "void_ratio = 0.1 drainage = 'undrained'")
+    for analysis, count in (("static", 1), ("quasi_static", 0)):
+        told = [line for line in warnings(closed.replace("'quasi_static'", f"'{analysis}'"), "--check")
+                if "scene.nml:8: the region 'block_1_1' keeps its fluids" in line and "as drained ground" in line]
+        check(f"undrained ground in {analysis} stages", len(told) == count, told)
 
     # A base that is 1 mm down when displacements are zeroed goes down once more; held, let go, not moved yet or back at
     # 0, it does not.
