@@ -38,9 +38,9 @@ contains
       call move_alloc(x, domain%mesh%x)
    end subroutine add_centers
 
-   !> Sets p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. Nodes of the ground
-   !> that is asked for have them from the &initial of that ground: an &initial of other ground that has them too, dry
-   !> or not there yet, means its own pores. docs/theory/host.md section 8.
+   !> Sets p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. Nodes of the
+   !> ground that is asked for have them from the &initial of that ground: an &initial of other ground that has them
+   !> too, dry or not there yet, means its own pores. docs/theory/host.md section 8.
    function pressures_at_start(model, ground) result(p)
       type(model_t), intent(in) :: model
       logical, intent(in) :: ground(:)                 !< (elements)
