@@ -10,6 +10,7 @@ module step_landings
    use kinds, only: wp
    use boundary_conditions, only: load_at
    use history_shapes, only: kinks_of
+   use model_types, only: SPACINGS
    use run_state, only: run_t
    use scene_parts, only: amplitude_t, amplitude_at
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W, AT_P_C
@@ -73,7 +74,8 @@ contains
 
       now = run%state%time
       until = asked
-      close = LAST_STEP*(asked - now)
+      ! Late in a run the sum of steps misses a time by more than a share of the step.
+      close = max(LAST_STEP*(asked - now), (SPACINGS + run%at%step)*spacing(now))
       do i = 1, size(run%model%amplitudes)
          associate (h => run%model%amplitudes(i), t => run%model%amplitudes(i)%times)
             if (size(h%arcs) > 0) until = min(until, minval(t, mask=t > now + close .and. t < asked - close .and. &

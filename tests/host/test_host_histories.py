@@ -137,3 +137,18 @@ def test_a_history_of_a_stage_is_told_of_no_wrong_times():
     check("the load begins with its stage", np.allclose(rows["top.u_z"], [
         -1e-3*SHAPES["half_sine"](t - 2) if 2 < t < 3 else 0 for t in rows["time"]], atol=1e-12, rtol=0),
         rows["top.u_z"])
+
+
+def test_given_steps_end_at_the_same_kinks_late_in_a_run():
+    # The drop within a tenth of a step is jumped over by none, whatever the sum of 31 steps misses its beginning by.
+    ends = []
+    for first in (1, 100000):
+        name = f"late_{first}"
+        text = block("times = 0, 0.003, 0.00301 values = 0, 1, 0 stages = 'then'").replace(
+            "duration = 2 dt = 0.1", f"duration = {first} dt = {first}").replace(
+            "duration = 3 dt = 0.1", "duration = 0.005 dt = 1e-4")
+        if ran(name, text):
+            times = tables.columns(work / f"{name}/histories.csv")["time"] - first
+            ends.append(times[times > 1e-6])
+    check("as many steps late as early", [len(one) for one in ends] == [51, 51], ends)
+    check("one ends with the drop", all(any(abs(one - 0.00301) < 1e-9) for one in ends), ends)
