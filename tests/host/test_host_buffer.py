@@ -120,7 +120,7 @@ def test_a_static_stage_asks_for_a_support_of_the_upper_plate():
     text = fall(v=0, stages="&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n").replace(
         "name = 'plate' r = 0, 0.1 z = 2", "name = 'plate' group = 'top'")
     done = start("rest", text)
-    check("without one it is refused", done.returncode == 13 and "'mass'" in done.stderr, done.stderr)
+    check("without one it is refused", done.returncode == 13 and "plate mass" in done.stderr, done.stderr)
     done = start("rest", text + "&fix group = 'mass' field = 'u_z' value = -0.001 /\n")
     check("with one it runs", done.returncode == 0, done.stderr)
     # 0.25 kN on the spring, of which the block of 1e4 kN/m gives way.

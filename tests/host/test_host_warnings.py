@@ -176,7 +176,7 @@ def refused(what, text, code, *words):
               and len(done.stderr.splitlines()) == 1, f"{done.returncode} {done.stderr}")
 
 
-# A body that nothing holds is named, with the motion and a group of it; what a tie, a plate or a contact holds is not.
+# A body that nothing holds is told by the motion and a place; what a tie, a plate or a contact holds is not.
 FREE = """&scene name = 'free' geometry = 'plane_strain' /
 &mesh r = 0, 1, 2 r_cells = 1, 1 z = 0, 1 z_cells = 1 /
 &elastic name = 'rock' young = 1e4 poisson = 0.3 /
