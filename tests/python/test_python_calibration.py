@@ -149,6 +149,11 @@ def test_a_shear_test_begins_where_it_is_sheared():
         hears(name, HEAD + first + "".join(ROWS[1:]), *words)
     told = sentence(HEAD + "A,1,-0.1,100,133,0.8018\n" + "".join(ROWS[1:]))
     check("a record that begins on the way is read", told == "", told)
+    # q of a dense sample grows to many times what it has there.
+    rows = "eps_a,q_kPa,p_kPa,e\n0.005,80,105,0.7\n0.05,900,700,0.7\n0.15,2500,1800,0.7\n"
+    check("of a dense undrained sample too", sentence(rows, "undrained") == "", sentence(rows, "undrained"))
+    rows = "eps_a,q_kPa,p_kPa,e\n0,100,133,0.8\n-0.001,60,115,0.8\n-0.002,50,110,0.8\n-0.02,-60,80,0.8\n"
+    check("extension from K0 is read", sentence(rows, "undrained") == "", sentence(rows, "undrained"))
     FILE.write_text("eps_a,q_kPa,p_kPa,e\n0,0,100,0.8\n-0.05,-60,70,0.8\n-0.1,-62,65,0.8\n")
     told = str(read_table(FILE, "undrained")[0].understood)
     check("extension is told, for it may be tension with the sign plus", "extension" in told, told)
@@ -173,15 +178,28 @@ def test_a_cyclic_test_has_one_amplitude_control_and_start():
 
 def test_compression_makes_no_sample_looser_and_bar_is_no_kpa():
     rows = "sigma_a_kPa,e\n50,0.88\n400,0.877\n50,0.9\n"
-    hears("a compression test whose rows run backwards", rows, "largest stress", "order of the test", kind="oedometer")
+    hears("a compression test whose rows run backwards", rows, "grows by 0.023", "order of the test", kind="oedometer")
+    rows = "sigma_a_kPa,e\n50,0.6\n400,0.5975\n50,0.602\n"
+    told = sentence(rows, "oedometer")
+    check("dense sand whose ring is corrected by too much is read", told == "", told)
     rows = "sigma_a,e\n0.5,0.9\n1,0.89\n4,0.88\n"
-    hears("bar under a name without unit", rows, "largest sigma_a is 4", "sigma_a_kPa", kind="oedometer")
+    hears("bar under a name without unit", rows, "largest stress is 4", "sigma_a_kPa", kind="oedometer")
+    for name, kind, rows in (
+        ("q of a loose sample", "undrained", "eps_a,q,p,e\n0,0,50,0.95\n0.005,15,35,0.95\n0.1,5,8,0.95\n"),
+        ("a radial stress of 1 kPa", "drained", "eps_a,q_kPa,sigma_r_kPa,e\n0,0,1,0.7\n0.05,5,1,0.72\n0.1,5,1,0.75\n"),
+    ):
+        check(f"{name} may be small", sentence(rows, kind) == "", sentence(rows, kind))
 
 
 def test_a_pore_pressure_with_the_sign_swapped_is_told():
     rows = "0,0,400,-300,0.8\n0.05,100,400,-340,0.8\n0.1,120,400,-350,0.8\n"
     head = "eps_a,q_kPa,sigma_3_kPa,u_kPa,e\n"
-    hears("a pore pressure below zero", head + rows, "begins at -300 kPa", kind="undrained")
+    hears("a pore pressure below a vacuum", head + rows, "begins at -300 kPa", kind="undrained")
+    rows = "0,0,0,-50,0.7\n0.01,80,0,-50,0.701\n0.1,150,0,-50,0.72\n"
+    FILE.write_text(head + rows)
+    test = read_table(FILE, "drained")[0]
+    check("a sample may be held by a vacuum", test.sigma_r == 50, test.columns)
+    check("which is told", "begins at -50 kPa" in str(test.understood), test.understood)
 
 
 def test_one_void_ratio_in_every_row_is_that_of_the_start():
@@ -192,8 +210,12 @@ def test_one_void_ratio_in_every_row_is_that_of_the_start():
     FILE.write_text("sigma_a_kPa,eps_a,e\n50,0,0.9\n100,0.01,0.9\n200,0.02,0.9\n")
     test = read_table(FILE, "oedometer")[0]
     check("compression follows its strain", abs(test["e"][-1] - (0.9 - 1.9 * 0.02)) < 1e-12, test["e"])
-    rows = "50,0,0.9\n100,0.03,0.881\n200,0.06,0.862\n"
-    hears("a strain that contradicts e", "sigma_a_kPa,eps_a,e\n" + rows, "eps_a is 3 times", kind="oedometer")
+    FILE.write_text("sigma_a_kPa,eps_a,e\n50,0,0.9\n100,0.03,0.881\n200,0.06,0.862\n")
+    told = str(read_table(FILE, "oedometer")[0].understood)
+    check("a strain that contradicts e is told", "eps_a of test" in told and "3 times what e tells" in told, told)
+    rows = "eps_a,q_kPa,p_kPa,e,eps_v\n0,0,100,0.8,0\n0.05,60,80,0.8003,1e-4\n0.1,90,90,0.7998,2e-4\n"
+    told = sentence(rows, "undrained")
+    check("noise of a volume that is held is no contradiction", told == "", told)
 
 
 def test_without_e_eps_v_is_believed():

@@ -72,6 +72,12 @@ def test_a_suction_that_a_test_is_not_computed_at_is_refused():
         check(f"{name} is refused", word in told, told)
 
 
+def test_a_suction_scatters_about_its_median():
+    rows = "50,0.9,4\n100,0.89,4.4\n200,0.87,3.6\n400,0.85,4\n"
+    item = make_task("s", [written("isotropic_tensiometer.csv", "p_kPa,e,suction_kPa\n" + rows)]).items[0]
+    check("a measured suction is read", item.test.suction == 4.0, item.test.columns)
+
+
 def test_a_bound_that_the_tests_do_not_press_on_is_no_warning():
     # The truth has S_min = 0 and S_max = 1, where soil ends: nothing outside fits better.
     rows = "".join(f"{s},{sand.saturation(s, 0.6)},0.6\n" for s in np.geomspace(0.5, 300.0, 12))

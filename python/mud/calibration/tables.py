@@ -41,19 +41,19 @@ FEWEST_ROWS |= {"cyclic": 1, "stiffness": 1, "modulus": 1, "liquefaction": 1}
 LARGEST_FRACTION = {"eps_a": 0.9, "eps_v": 0.3, "gamma": 1.5}
 SMALLEST_PERCENT = 0.6  # a shear test in per cent goes further: less means fractions
 SMALLEST_VOLUME = 1e-3  # a drained test to eps_a of 0.05 or more changes its volume by more
-NO_PRESSURE = 5.0  # [kPa] by which the zero of a pore pressure may be off
+NO_PRESSURE, VACUUM = 5.0, 100.0  # [kPa] by which the zero of a pore pressure may be off; by which it may lie below
 TOO_LARGE = 1.0e5  # [kPa]; a largest stress above means another unit
-# And one below: of p_0 (also at 1 g) or another, for each without and with a unit.
-SMALLEST = {False: (20.0, 2.0), True: (0.5, 0.0)}
+# And one below: of p_0 (also at 1 g), and of the other stresses of a test together, where no name has a unit and where one has.
+SMALLEST = {("p_0",): (0.5, 0.0), ("q", "p", "sigma_a", "sigma_r"): (20.0, 2.0)}
 LARGEST_AMPLITUDE = 0.03  # of a strain under a name without unit: more means per cent
 # What has one value in a test, and the share by which a record of it may scatter; each row of ROWS_APART is a test of its own.
 STEADY = 0.1
-ONE, ROWS_APART = {"e_0": 2e-3, "p_0": STEADY, "amplitude": STEADY}, ("stiffness", "modulus", "liquefaction")
-HELD = 0.15  # share by which p - q/3 may leave its median where the radial stress is held
+ONE, ROWS_APART = {"e_0": 0.01, "p_0": STEADY, "amplitude": STEADY}, ("stiffness", "modulus", "liquefaction")
+HELD = 0.15  # share by which a suction, or p - q/3 where the radial stress is held, may leave its median
 TOTAL = 0.02  # share of p at the start by which p - q/3 moves at least in an undrained test that is sheared
-# Where a shear test begins: share of its largest q up to which it has not been sheared, strains up to which it has not
-# moved, or had another zero; what a volumetric strain scatters by; share of the radial stress that q has from anisotropy on.
-UNSHEARED, STRAINLESS, MOVED, VOLUME_SCATTER, ANISOTROPIC = 0.05, 1e-4, 2e-3, 2.5e-3, 0.15
+# Where a shear test begins: share of the radial stress from which on q means anisotropic consolidation or a sample that has been
+# sheared; axial strain up to which it has not moved; strains that an unsheared sample has at most.
+ANISOTROPIC, STRAINLESS, UNSHEARED = 0.15, 1e-4, 2.5e-3
 # What leads the path of a test, and whether by its logarithm.
 LEADS = {"drained": ("eps_a", False), "undrained": ("eps_a", False), "oedometer": ("sigma_a", True)}
 LEADS |= {"isotropic": ("p", True), "retention": ("suction", True), "cyclic": ("cycle", False)}
@@ -79,7 +79,6 @@ DAMPED, LEAST = 1e-3, 5e-3  # at this one it has more damping
 COMPRESSES = 4e-5  # [kPa^-1/2] strain of compression over the growth of stress^(1/2); stiffer by ten than dense sand is
 WEAK, FALLEN = 0.75, 0.15  # shares of the strength, and of the fall of eps_v that has happened by then: see _check_volume
 SLOPE_MISFIT = 0.5  # share of eps_v by which e may contradict it before the signs are doubted
-SETTLES = 1.5e-3  # scatter of a void ratio in compression
 DILATES = 1e-3  # volumetric strain below its negative is dilatancy, not scatter
 
 
@@ -266,6 +265,7 @@ def _test(
     pressures: dict[str, tuple[str, np.ndarray]] = {}
     words = {"control": "", "cycle_by": ""}
     understood: list[tuple[str, str]] = []
+    sizes: list[tuple[float, Head]] = []
     numbers = np.array([number for number, _ in rows])
     for at, head in enumerate(heads):
         cells = [cells[at].strip() for _, cells in rows]
@@ -284,18 +284,12 @@ def _test(
         if head.quantity in STRAINS:
             _check_percent(place, name, kind, head, given, numbers)
         values = head.inside(given)
-        least = SMALLEST[head.quantity == "p_0"][head.unit != ""]
-        if head.quantity in ("q", "p", "p_0", "sigma_a", "sigma_r") and not least <= np.max(np.abs(values)) <= TOO_LARGE:
-            raise InputError(
-                f"{where}: the largest {head.title} is {np.max(np.abs(given)):g}; stresses are in kPa unless the "
-                f"name says _MPa, _bar or _Pa, and a test of soil reaches between {least:g} kPa"
-                + (f" (less: call the column {head.quantity}_kPa)" if not head.unit else "")
-                + " and 100 MPa"
-            )
+        sizes.append((float(np.max(np.abs(values))), head))
         if head.quantity in ONE and kind not in ROWS_APART and np.ptp(values) > ONE[head.quantity] * np.max(np.abs(values)):
             raise InputError(
-                f"{where}: {head.title} goes from {np.min(given):g} to {np.max(given):g}; a test has one. What has another is a "
-                "test of its own, and a void ratio of every row is called e"
+                f"{where}: {head.title} goes from {np.min(given):g} to {np.max(given):g}; a test has one, which may stand in its "
+                "first row alone. What has another is a test of its own"
+                + ", and a void ratio of every row is called e" * (head.quantity == "e_0")
             )
         if head.quantity in STRESSES:
             stresses[head.quantity, head.state] = head.title, values
@@ -303,14 +297,18 @@ def _test(
             pressures[head.state] = head.title, values
         else:
             columns[head.quantity] = values
+    _check_stress_units(where, sizes)
     pressure, since, told = pore_pressure(kind, pressures)
     if pressure is not None:
         columns["u"] = pressure
-        if pressure[0] < -NO_PRESSURE:
+        if pressure[0] < -VACUUM:
             raise InputError(
-                f"{where}: the pore pressure begins at {pressure[0]:g} kPa; it is positive in compression, and what is below "
-                "zero before the test is suction, a column of its own"
+                f"{where}: the pore pressure begins at {pressure[0]:g} kPa, below a vacuum; it is positive in compression, and "
+                "suction is a column of its own"
             )
+        if pressure[0] < -NO_PRESSURE:
+            below = f"a pore pressure that begins at {pressure[0]:.4g} kPa in test {name}"
+            told.append((below, "a vacuum in pores without air or without water; where they hold both it is suction"))
     amplitude = next((head for head in heads if head.quantity == "amplitude"), None)
     if amplitude:
         _check_amplitude(where, words["cycle_by"], amplitude, columns["amplitude"])
@@ -356,16 +354,16 @@ def _test(
 def _check_start(place: str, test: LaboratoryTest) -> None:
     """Refuses strains with another zero than the start of shearing; tells where the model starts other than may be expected."""
     strain, q = test["eps_a"], test["q"]
-    unsheared = abs(q[0]) <= UNSHEARED * np.max(np.abs(q)) or abs(strain[0]) <= STRAINLESS
-    for name, least in (("eps_a", MOVED), ("eps_v", VOLUME_SCATTER)):
-        if unsheared and name in test and abs(test[name][0]) > least:
+    radial, q_0 = test.start_of_shear()
+    unsheared = abs(q[0]) <= ANISOTROPIC * radial or abs(strain[0]) <= STRAINLESS
+    for name in ("eps_a", "eps_v"):
+        if unsheared and name in test and abs(test[name][0]) > UNSHEARED:
             raise InputError(
                 f"{place}:{test.lines[0]}: test {test.name}: {name} begins at {test[name][0]:g}, before the sample is sheared: "
                 "strains count from the start of shearing, and e_0 is the void ratio there. Take the first value off the others"
             )
     if np.median(q) < 0:
         test.understood.append((f"a negative q in test {test.name}", "extension, because compression is positive"))
-    q_0 = test.start_of_shear()[1]
     if q_0:
         told = "the start of the model, of a sample that was consolidated anisotropically"
         test.understood.append((f"q = {q_0:.4g} kPa without axial strain in test {test.name}", told))
@@ -410,6 +408,22 @@ def _values(place: str, title: str, cells: list[str], numbers: np.ndarray) -> np
         if not np.isfinite(values[i]):
             raise InputError(f"{place}:{numbers[i]}: {title} = '{cell}' is not a number")
     return values
+
+
+def _check_stress_units(where: str, sizes: Sequence[tuple[float, Head]]) -> None:
+    """Refuses stresses of a size that no test of soil has. One of several may be small, as q of a loose sample is."""
+    for quantities, least in SMALLEST.items():
+        mine = [given for given in sizes if given[1].quantity in quantities]
+        if not mine:
+            continue
+        size, head = max(mine, key=lambda given: given[0])
+        units = any(given[1].unit for given in mine)
+        if not least[units] <= size <= TOO_LARGE:
+            raise InputError(
+                f"{where}: the largest stress is {size:g} kPa, of {head.title}, and a test of soil reaches between {least[units]:g} "
+                f"kPa and 100 MPa. Give the unit in the name of the column, as {head.quantity}_{'Pa' if size > TOO_LARGE else 'MPa'}"
+                + f", or {head.quantity}_kPa if it is kPa" * (not units and size < least[0])
+            )
 
 
 def _check_percent(place: str, name: str, kind: str, head: Head, values: np.ndarray, numbers: np.ndarray) -> None:
@@ -458,7 +472,7 @@ def _check_values(place: str, test: LaboratoryTest) -> None:
         strain, q = test["eps_a"], test["q"] if "q" in test else test["stress_ratio"] - 1
         way = np.sign(strain[-1] - strain[0])
         late = slice(len(q) // 2, None)
-        if way * np.median(q[late]) < 0:
+        if way * np.median(q[late]) < 0 and way * (np.median(q[late]) - q[0]) < 0:  # it may come from K0
             raise InputError(
                 f"{where}: q is {'negative' if way > 0 else 'positive'} while eps_a "
                 f"{'grows' if way > 0 else 'falls'}: one of the two has its sign swapped; compression is positive, "
@@ -468,7 +482,7 @@ def _check_values(place: str, test: LaboratoryTest) -> None:
         suction = test["suction"]
         if test.kind in ROWS_APART and np.any(suction > 0):
             raise InputError(f"{where}: {suction.max():g} kPa of suction; a {test.kind} test is computed saturated")
-        if np.ptp(suction) > STEADY * np.max(suction):
+        if np.max(np.abs(suction - np.median(suction))) > HELD * np.median(suction):
             raise InputError(
                 f"{where}: suction goes from {suction.min():g} to {suction.max():g} kPa; a test is computed at a constant one"
             )
@@ -562,10 +576,11 @@ def _check_stress(where: str, test: LaboratoryTest) -> None:
                 f"{where}: e grows from {test['e'][first]:g} to {test['e'][last]:g} while the stress grows from "
                 f"{stress[first]:g} to {stress[last]:g} kPa: are the rows in the order of the test, and is e the void ratio?"
             )
-        if stress[-1] >= stress[first] and test["e"][-1] > test["e"][first] + SETTLES:
+        compressed, swells = test["e"][first] - test["e"][last], test["e"][-1] - test["e"][last]
+        if stress[-1] >= stress[first] and swells > 2 * compressed:
             raise InputError(
-                f"{where}: e is {test['e'][first]:g} at {stress[first]:g} kPa before the largest stress and {test['e'][-1]:g} at "
-                f"{stress[-1]:g} kPa behind it: no sample becomes looser by compression. Are the rows in the order of the test?"
+                f"{where}: e falls by {compressed:.3g} from {stress[first]:g} to {stress[last]:g} kPa and grows by {swells:.3g}, "
+                f"more than twice as much, until it is unloaded to {stress[-1]:g} kPa. Are the rows in the order of the test?"
             )
     if test.kind == "retention":
         driest, wettest = int(np.argmax(test["suction"])), int(np.argmin(test["suction"]))
@@ -579,13 +594,18 @@ def _check_stress(where: str, test: LaboratoryTest) -> None:
 def _check_volume(where: str, test: LaboratoryTest) -> None:
     """Volumetric strain against e and against what sand does: it contracts before it dilates."""
     name = "eps_a" if test.kind == "oedometer" else "eps_v"
-    if name not in test or test.kind == "cyclic":
+    if name not in test or test.kind in ("cyclic", "undrained"):
         return
     change = test[name] - test[name][0]
     if "e" in test:
         told = (test["e"][0] - test["e"]) / (1 + test["e"][0])
         size = float(told @ told)
         ratio = float(change @ told) / size if size > 0 else 1.0
+        if test.kind != "drained":
+            if abs(ratio - 1) > SLOPE_MISFIT:
+                meant = f"not used beside e; it is {ratio:.3g} times what e tells, (e_0 - e)/(1 + e_0)"
+                test.understood.append((f"{name} of test {test.name}", meant))
+            return
         if abs(ratio + 1) < SLOPE_MISFIT:
             raise InputError(
                 f"{where}: {name} and e contradict each other: where the void ratio grows {name} must fall. The sign of "
