@@ -245,6 +245,13 @@ def test_water_outside_without_its_load():
                        ("a held history", "")):
         text = lake + (water if more else water.replace("value = 30", "hold = 'yes'")) + more
         check(f"{what} is no doubt", not any("weight is missing" in line for line in lines_of("lake", text)))
+    # In axial symmetry the axis holds itself, and a drain there has no surface.
+    drain = water.replace("'top'", "'left'").replace("value = 30", "value = 30 value_slope = -10")
+    for geometry, support, count in (("axisymmetric", "", 0), ("plane_strain", "", 1),
+                                     ("plane_strain", "&fix group = 'left' field = 'u_r' /\n", 0)):
+        text = lake.replace("&fix group = 'left' field = 'u_r' /\n", "").replace("plane_strain", geometry)
+        found = [line for line in lines_of("drain", text + support + drain) if "weight is missing" in line]
+        check(f"a drain on the left, {geometry} {support}", len(found) == count, found)
     grows = lake + "&history name = 'h' times = 0, 5 values = 0, -1 /\n" + water.replace(
         "value = 30", "value = -20 history = 'h'")
     check("a level that rises", any("up to 20 kPa" in line for line in lines_of("lake", grows)))
