@@ -98,8 +98,8 @@ module porous_domain
       integer, allocatable :: n_carriers(:)           !< n_p where coupled with water, 1 where undrained, else 0.
       integer, allocatable :: carriers(:, :)          !< (6, elements) Nodes.
       integer, allocatable :: center(:)               !< Node of an undrained element, in no other; else 0.
-      real(wp), allocatable :: given(:, :)            !< (2, nodes) p_w, p_c at the start, where a region is drained or
-                                                      !< undrained; of centers the mean over the element.
+      real(wp), allocatable :: given(:, :, :)         !< (2, nodes, DRAINED:UNDRAINED) p_w, p_c at the start in ground
+                                                      !< of these kinds; of centers the mean over the element.
       integer, allocatable :: before_state(:)         !< (elements + 1) State variables before those of an element.
       type(gauss_t), allocatable :: gauss(:, :)       !< (rule, elements)
       integer :: threads = 1
@@ -268,13 +268,11 @@ contains
       real(wp) :: p(2)
 
       p = 0.0_wp
-      select case (domain%regions(domain%region_of(element))%drainage)
-      case (DRAINED)
-         p = matmul(domain%given(:, domain%mesh%t6(:, element)), domain%gauss(point, element)%n)
-      case (UNDRAINED)
-         p = matmul(domain%given(:, domain%mesh%t6(:, element)), domain%gauss(point, element)%n) &
-             - domain%given(:, domain%center(element))
-      end select
+      associate (drainage => domain%regions(domain%region_of(element))%drainage)
+         if (drainage /= DRAINED .and. drainage /= UNDRAINED) return
+         p = matmul(domain%given(:, domain%mesh%t6(:, element), drainage), domain%gauss(point, element)%n)
+         if (drainage == UNDRAINED) p = p - domain%given(:, domain%center(element), drainage)
+      end associate
    end function given_pressures_at
 
    !> Makes a state of the right size, where everything is zero and saturated. Void ratios are those of the regions.

@@ -9,13 +9,15 @@ module acting_places
    use scene_parts, only: place_of, PRESCRIBED_OF_BODY
    use texts, only: short, whole
    use triangle_mesh, only: group_of_t, triangles_beside
+   use unknown_fields, only: AT_U_R
    implicit none (type, external)
    private
-   public :: facing_edges, acting_stages, ground_of, nodes_of_ground, given_in, are_in, share_an_edge, check_actions, &
-             location_of
+   public :: facing_edges, acting_stages, ground_of, nodes_of_ground, given_in, are_in, are_on_axis, share_an_edge, &
+             check_actions, location_of
 
    !> Side of an edge on which the ground is: what acts along its normal acts on that.
    integer, parameter :: ON_NONE = 0, ON_LEFT = 1, ON_RIGHT = 2, ON_BOTH = 3
+   real(wp), parameter :: ON_AXIS = 1.0e-9_wp   !< Share of the largest radius that is none.
 contains
    !> Elements that are part of the ground in a stage. (elements)
    pure function ground_of(model, number) result(present)
@@ -176,8 +178,18 @@ contains
       end associate
    end function share_an_edge
 
-   !> Marks what a &fix gives nodes in a stage, or from its start to its end: a limit gives nothing throughout.
-   !> Rotations of bodies stand at PRESCRIBED_OF_BODY. (PRESCRIBED_OF_BODY, nodes)
+   !> Marks the nodes that axial symmetry holds along r: nothing leaves the axis. (nodes)
+   pure function are_on_axis(model) result(held)
+      type(model_t), intent(in) :: model
+      logical :: held(size(model%domain%mesh%x, 2))
+
+      associate (r => model%domain%mesh%x(1, :))
+         held = model%domain%axisymmetric .and. r <= ON_AXIS*maxval(r)
+      end associate
+   end function are_on_axis
+
+   !> Marks what a &fix or the axis gives nodes in a stage, or from its start to its end: a limit gives nothing
+   !> throughout. Rotations of bodies stand at PRESCRIBED_OF_BODY. (PRESCRIBED_OF_BODY, nodes)
    pure function given_in(model, number, throughout) result(given)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number                !< Of the stage.
@@ -187,6 +199,7 @@ contains
       integer :: i
 
       given = .false.
+      given(AT_U_R, :) = are_on_axis(model)
       whole = .false.
       if (present(throughout)) whole = throughout
       associate (stage => model%stages(number))

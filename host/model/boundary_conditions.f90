@@ -2,6 +2,7 @@
 !> What acts in a step: prescribed displacements, pore pressures and air pressures at its end, loads at a moment, and
 !> the masses of plates.
 module boundary_conditions
+   use acting_places, only: are_on_axis
    use kinds, only: wp
    use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of, &
@@ -16,7 +17,6 @@ module boundary_conditions
    public :: load_at, force_of, plate_loads
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
-   real(wp), parameter :: ON_AXIS = 1.0e-9_wp     !< Share of the largest radius that is none.
 contains
    !> Makes a constraint that prescribes and loads nothing; plates have their mass. Extents: see constraint_t.
    function new_constraint(model) result(constraint)
@@ -51,9 +51,9 @@ contains
       real(wp) :: factors(size(problem%model%fixes))
 
       call prescribing_fixes(problem, time, by, air_by)
-      associate (r => problem%model%domain%mesh%x(1, :), z => problem%model%domain%mesh%x(2, :), &
-                 model => problem%model, dofs => problem%model%dofs, constraint => problem%constraint, &
-                 x_start => problem%at%x_start, axis => ON_AXIS*maxval(problem%model%domain%mesh%x(1, :)))
+      associate (z => problem%model%domain%mesh%x(2, :), model => problem%model, dofs => problem%model%dofs, &
+                 constraint => problem%constraint, x_start => problem%at%x_start, &
+                 on_axis => are_on_axis(problem%model))
          factors = [(factor_at(model, model%fixes(i)%amplitude, time), i=1, size(factors))]
          constraint%fixed = by > 0
          constraint%air = air_by > 0
@@ -64,9 +64,8 @@ contains
                if (fix%hold) constraint%target(i) = x_start(fix%field, dofs%node(i))
             end associate
          end do
-         ! In axial symmetry nothing leaves the axis.
-         do i = 1, merge(size(by), 0, model%domain%axisymmetric)
-            if (by(i) > 0 .or. dofs%field(i) /= AT_U_R .or. r(dofs%node(i)) > axis) cycle
+         do i = 1, size(by)
+            if (by(i) > 0 .or. dofs%field(i) /= AT_U_R .or. .not. on_axis(dofs%node(i))) cycle
             constraint%fixed(i) = .true.
             constraint%target(i) = 0.0_wp
          end do

@@ -1,14 +1,14 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings about supports, loads and histories of a scene that are allowed but usually mistakes.
 module boundary_warnings
-   use acting_places, only: given_in, acting_stages
+   use acting_places, only: given_in, acting_stages, are_on_axis
    use kinds, only: wp
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
    use model_types, only: model_t, acting_t, fix_t
    use scene_parts, only: amplitude_at, place_of, LOAD_AIR, PRESCRIBED_P_A, PRESCRIBED_WORDS
    use texts, only: short, whole
-   use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
+   use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_P_W, AT_P_C
    implicit none (type, external)
    private
    public :: warn_of_boundaries
@@ -41,8 +41,8 @@ contains
             do j = 1, i - 1
                associate (before => model%fixes(j), nodes => model%domain%mesh%groups(model%fixes(j)%group)%nodes)
                   s = findloc(one%in_stage .and. before%in_stage, .true., dim=1)
-                  ! Where one side is given and another limited, as at a water level, the given one counts.
-                  if (s == 0 .or. before%field /= one%field .or. (before%limits .neqv. one%limits)) cycle
+                  ! Beside a limit what is given counts, as at a water level, and of two limits the smaller one.
+                  if (s == 0 .or. before%field /= one%field .or. before%limits .or. one%limits) cycle
                   if (before%from >= one%until .or. one%from >= before%until) cycle
                   n = findloc([(differ(before, one, model%domain%mesh%x(2, nodes(node))) .and. &
                                 any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
@@ -167,18 +167,23 @@ contains
    end subroutine look_at_histories
 
    !> Supports of pressures and inflows that act on a part of their group alone, or in static stages alone; dashpots and
-   !> accelerations without a dynamic stage.
+   !> accelerations without a dynamic stage; supports that take nodes off the axis.
    subroutine look_at_places(model)
       type(model_t), intent(in) :: model
-      logical :: flows(size(model%domain%mesh%x, 2))
+      logical, dimension(size(model%domain%mesh%x, 2)) :: flows, on_axis
       integer :: i
 
+      on_axis = are_on_axis(model)
       flows = nodes_with_flow(model%domain)
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
             if (one%acceleration .and. .not. any(one%in_stage .and. model%stages%has_inertia)) call print_warning( &
                place_of(one)//'the acceleration has no effect: no stage in which it acts is dynamic, and elsewhere '// &
                'the nodes stay.')
+            if (one%field == AT_U_R .and. .not. one%hold .and. any(on_axis(nodes)) .and. &
+                max(abs(one%value), abs(one%value_slope)) > 0.0_wp) call print_warning( &
+               place_of(one)//'u_r of nodes at r = 0 is prescribed: in axial symmetry they stay '// &
+               'on the axis, and beside nodes that leave it the hoop strain has no bound.')
             if (one%field <= DISPLACEMENTS) cycle
             call look_at_stages(one, PRESCRIBED_WORDS(one%field))
             if (.not. all(flows(nodes))) call print_warning(place_of(one)// &

@@ -7,7 +7,7 @@ module initial_conditions
    use kinds, only: wp
    use model_types, only: model_t, gravity_at, initial_t
    use given_pressures, only: pressures_at_start, water, suction
-   use porous_domain, only: model_state_t, new_state_of, pressures_at, COUPLED, DRAINED, DRY
+   use porous_domain, only: model_state_t, new_state_of, pressures_at, COUPLED, DRAINED, UNDRAINED, DRY
    use material_point, only: material_t, range_t
    use retention_curves, only: saturation_t
    use faults, only: fault_t, raise
@@ -151,11 +151,11 @@ contains
          do e = 1, size(domain%region_of)
             associate (drainage => domain%regions(domain%region_of(e))%drainage, nodes => domain%mesh%t6(:, e))
                if (drainage /= DRY) wet(nodes) = .true.
-               if (drainage == DRAINED .and. present(e)) x(AT_P_W:AT_P_C, nodes) = domain%given(:, nodes)
+               if (drainage == DRAINED .and. present(e)) x(AT_P_W:AT_P_C, nodes) = domain%given(:, nodes, drainage)
             end associate
             if (domain%center(e) == 0) cycle
             wet(domain%center(e)) = .true.
-            x(AT_P_W:AT_P_C, domain%center(e)) = domain%given(:, domain%center(e))
+            x(AT_P_W:AT_P_C, domain%center(e)) = domain%given(:, domain%center(e), UNDRAINED)
          end do
          do e = 1, size(x, 2)
             if (.not. wet(e)) x(AT_P_W:AT_P_C, e) = 0.0_wp

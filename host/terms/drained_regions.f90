@@ -32,19 +32,20 @@ contains
    !> Pressures that are no unknowns. docs/theory/host.md section 3.5. Sets `given` of the domain [kPa].
    subroutine give_pressures(model)
       type(model_t), intent(inout) :: model
-      real(wp) :: p(2, size(model%domain%mesh%x, 2))
-      integer :: e
+      real(wp) :: p(2, size(model%domain%mesh%x, 2), DRAINED:UNDRAINED)
+      integer :: e, i
 
       associate (domain => model%domain)
-         associate (drainage => domain%regions(domain%region_of)%drainage)
-            p = pressures_at_start(model, drainage == DRAINED .or. drainage == UNDRAINED)
-         end associate
-         call set_middles(domain, p)
-         do e = 1, size(domain%region_of)
-            ! The mean of a quadratic field over a triangle is that of the middles of its sides.
-            if (domain%center(e) > 0) p(:, domain%center(e)) = sum(p(:, domain%mesh%t6(4:6, e)), dim=2)/3
+         do i = DRAINED, UNDRAINED
+            p(:, :, i) = pressures_at_start(model, domain%regions(domain%region_of)%drainage == i)
+            call set_middles(domain, p(:, :, i))
          end do
-         domain%given = p
+         do e = 1, size(domain%region_of)
+            if (domain%center(e) == 0) cycle
+            ! The mean of a quadratic field over a triangle is that of the middles of its sides.
+            p(:, domain%center(e), UNDRAINED) = sum(p(:, domain%mesh%t6(4:6, e), UNDRAINED), dim=2)/3
+         end do
+         allocate (domain%given(2, size(p, 2), DRAINED:UNDRAINED), source=p)
       end associate
    end subroutine give_pressures
 
@@ -67,7 +68,7 @@ contains
                      if (at == 0) cycle
                      if (c%fixed(at)) cycle
                      c%fixed(at) = .true.
-                     c%target(at) = domain%given(i - DISPLACEMENTS, node)
+                     c%target(at) = domain%given(i - DISPLACEMENTS, node, DRAINED)
                   end do
                end associate
             end do
@@ -112,8 +113,8 @@ contains
             if (center == 0) cycle
             do k = 1, domain%n_p
                associate (node => domain%mesh%t6(k, e))
-                  total(:, node) = total(:, node) + x(AT_P_W:AT_P_C, center) + domain%given(:, node) &
-                                   - domain%given(:, center)
+                  total(:, node) = total(:, node) + x(AT_P_W:AT_P_C, center) + domain%given(:, node, UNDRAINED) &
+                                   - domain%given(:, center, UNDRAINED)
                   users(node) = users(node) + 1
                end associate
             end do

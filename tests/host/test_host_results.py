@@ -188,6 +188,22 @@ def test_water_into_a_drained_region_is_not_that_of_a_support_of_the_air():
     check("nor does a seepage face take it", row["top.outflow_a"] == 0 and row["all.outflow_a"] != 0, row)
 
 
+def test_a_pressure_that_follows_from_two_others_has_no_limit():
+    # p_a = 0 and p_c = 6 kPa of the top ask for p_w = -6 kPa there, below the limit of a face and above water at rest:
+    # Darcy's 2e-4 times 4 kPa go in, whether a face or rain would let go of p_w or not. Rain has no part in it.
+    text = COLUMN.format(fields="u-p_w-p_c", retention="retention = 'flat'", suction="p_c_slope = 10", base=0) + \
+        "&retention name = 'flat' law = 'table' suction = 0, 1e6 saturation = 0.6, 0.6 /\n" \
+        "&fix group = 'top' field = 'p_a' /\n&fix group = 'top' field = 'p_c' value = 6 /\n"
+    for name, acts, off in (("face", FACE.format(""), 0), ("rain", RAIN.format(1e-3, ""), 1e-3)):
+        folder = run(text + acts, f"follows_{name}")
+        row = last(folder)
+        near(f"beside {name}: into the top", row["top.outflow_w"], off - 8e-4, 1e-3)
+        near(f"beside {name}: out of the base", row["bottom.outflow_w"], 8e-4, 1e-3)
+        check(f"beside {name}: no node has a limit", row["top.at_limit"] == 0, row)
+        top = {node["p_w"] for node in tables.numbers(folder / "nodes_s.csv") if node["z"] == 1}
+        check(f"beside {name}: p_w follows", len(top) == 1 and abs(top.pop() + 6) < 1e-12, top)
+
+
 def test_rain_counts_per_horizontal_area():
     # Rain counts per horizontal area: none falls on a wall, none from below.
     row = last(run(COLUMN.format(fields="u-p_w", retention="", suction="", base=4)

@@ -245,6 +245,13 @@ def test_water_outside_without_its_load():
                        ("a held history", "")):
         text = lake + (water if more else water.replace("value = 30", "hold = 'yes'")) + more
         check(f"{what} is no doubt", not any("weight is missing" in line for line in lines_of("lake", text)))
+    # In axial symmetry the axis holds itself, and a drain there has no surface.
+    drain = water.replace("'top'", "'left'").replace("value = 30", "value = 30 value_slope = -10")
+    for geometry, support, count in (("axisymmetric", "", 0), ("plane_strain", "", 1),
+                                     ("plane_strain", "&fix group = 'left' field = 'u_r' /\n", 0)):
+        text = lake.replace("&fix group = 'left' field = 'u_r' /\n", "").replace("plane_strain", geometry)
+        found = [line for line in lines_of("drain", text + support + drain) if "weight is missing" in line]
+        check(f"a drain on the left, {geometry} {support}", len(found) == count, found)
     grows = lake + "&history name = 'h' times = 0, 5 values = 0, -1 /\n" + water.replace(
         "value = 30", "value = -20 history = 'h'")
     check("a level that rises", any("up to 20 kPa" in line for line in lines_of("lake", grows)))
@@ -435,3 +442,28 @@ def test_nodes_of_two_grounds_have_the_pressure_of_the_one_whose_fluids_flow():
             check(f"{name} runs", done.returncode == 0, done.stderr)
             p_w = [row["p_w"] for row in tables.numbers(work / name / "nodes_rest.csv") if row["z"] == 1]
             check(f"{name}: the pressure between them", len(p_w) == 3 and set(p_w) == {wanted}, (order, p_w))
+
+
+def test_drained_and_undrained_ground_meet_with_pressures_of_their_own():
+    # 20 kPa in a block that keeps its fluids, 5 kPa in the drained block above, whichever &initial is written last: the
+    # base bears the 20 kPa of what stands on it, the top the 5 kPa below it, and the node between has the drained ones.
+    initials = ["&initial group = 'block_1_1' p_w = 20 /\n", "&initial group = 'block_1_2' p_w = 5 /\n"]
+    for order in (initials, initials[::-1]):
+        done = start("meet", f"""&scene name = 'two' geometry = 'plane_strain' fields = 'u-p_w' /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1, 2 z_cells = 1, 1 /
+&elastic name = 'e' young = 1e4 poisson = 0.3 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region group = 'block_1_1' material = 'e' void_ratio = 0.5 drainage = 'undrained' /
+&region group = 'block_1_2' material = 'e' void_ratio = 0.5 drainage = 'drained' /
+{''.join(order)}&stage name = 'rest' analysis = 'quasi_static' duration = 1 dt = 1 /
+&fix group = 'all' field = 'u_r' /
+&fix group = 'all' field = 'u_z' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'top' field = 'u_z' /
+""")
+        check("it runs", done.returncode == 0, done.stderr)
+        row = tables.numbers(work / "meet" / "reactions_rest.csv")[-1]
+        forces = row["bottom.force_z"], row["top.force_z"]
+        check("base and top", abs(forces[0] - 20) < 1e-9 and abs(forces[1] + 5) < 1e-9, (order, forces))
+        p_w = [row["p_w"] for row in tables.numbers(work / "meet" / "nodes_rest.csv") if row["z"] == 1]
+        check("the pressure between them", len(p_w) == 3 and set(p_w) == {5}, (order, p_w))

@@ -83,7 +83,7 @@ BAR = (root / "verification/host/contact/bar.nml").read_text().replace("rho_inf 
 
 
 # Nothing happens for 9.5 s, then a load grows for 0.1 s on soil that drains in seconds: the flow begins with the load
-# and not with the root of time. A quarter of the second step, a third of the pressure, was taken for its error (8 %).
+# and not with the root of time.
 LATE = """&scene name = 'late' geometry = 'plane_strain' fields = 'u-p_w' step_tolerance = 1e-2 /
 &mesh r = 0, 0.1 r_cells = 1 z = 0, 1 z_cells = 8 /
 &elastic name = 'soil' young = 1.0e4 poisson = 0.25 /

@@ -118,6 +118,8 @@ DOUBTS = [
     ("acceleration without a dynamic stage", "'left' field = 'u_r'",
      "'left' field = 'u_r' motion = 'acceleration' value = 1 history = 'h'",
      ["scene.nml:12: the acceleration has no effect: no stage in which it acts"]),
+    ("nodes that leave the axis", "'left' field = 'u_r'", "'left' field = 'u_r' value = 1e-3",
+     ["scene.nml:12: u_r of nodes at r = 0 is prescribed", "the hoop strain has no bound"]),
     ("inflow of a static stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"
      "&load group = 'top' kind = 'water' value = 1e-6 stages = 'rest' /\n&load",
      ["the inflow has no effect: the stages in which it acts are static"]),
@@ -533,6 +535,9 @@ def test_small_mesh():
     check("those that do not are", ["p_w of the node at (2, 0) m has two &fix" in line
                                     for line in warnings(level.format(-1), "--check")] == [True],
           warnings(level.format(-1), "--check"))
+    # Of two limits the smaller one counts, whichever is written last.
+    check("nor is a limit beside another", not any("two &fix" in line for line in warnings(level.format(
+        "-1 kind = 'seepage'").replace("'top' field = 'p_w'", "'top' field = 'p_w' kind = 'seepage'"), "--check")))
     doubtful = SCENE.replace("surface = 0", "surface = 0 sigma = 1, 1, 1").replace("dt = 0.5", "dt = 0.05")
     check("told at the start of a run", len(warnings(doubtful)) == 1)
     check("told by a quiet run as well", len(warnings(doubtful, "--quiet")) == 1)
