@@ -2,7 +2,7 @@
 !> Bodies that no support holds in a stage without inertia. Elements, shared unknowns and plates connect nodes to
 !> bodies. docs/theory/host.md section 7.1.
 module free_bodies
-   use acting_places, only: given_in, location_of
+   use acting_places, only: given_in, ground_of, location_of
    use kinds, only: wp
    use contact_types, only: has_friction
    use element_sums, only: LAST_U
@@ -34,11 +34,11 @@ contains
 
       associate (x => model%domain%mesh%x)
          near = NEAR_SHARE*maxval(maxval(x, dim=2) - minval(x, dim=2))
-         body = bodies_of(model)
          allocate (model%on_contact(size(model%stages)))
          do s = 1, size(model%stages)
             model%on_contact(s)%words = ''
             if (model%stages(s)%has_inertia) cycle
+            body = bodies_of(model, ground_of(model, s))
             held = held_in(model, s, near)
             touched = touched_in(model, s)
             do b = 1, size(body)
@@ -63,10 +63,13 @@ contains
       end associate
    end subroutine check_bodies
 
-   !> Finds for every node the first node of its body, which stands for it; 0 where it has no displacement.
-   function bodies_of(model) result(body)
+   !> Finds for every node the first node of its body, which stands for it; 0 where it has no displacement, or its
+   !> ground is not there.
+   function bodies_of(model, present) result(body)
       type(model_t), intent(in) :: model
+      logical, intent(in) :: present(:)   !< (elements)
       integer :: body(size(model%domain%mesh%x, 2))
+      logical :: there(size(body))
       integer, dimension(model%dofs%n) :: first, before   ! First unknowns of the bodies of unknowns.
       integer, allocatable :: joined(:)
       integer :: e, i
@@ -74,9 +77,15 @@ contains
       associate (dofs => model%dofs)
          first = [(i, i=1, dofs%n)]
          before = 0
+         there = .false.
+         there(model%domain%bodies) = .true.
+         do e = 1, size(present)
+            if (present(e)) there(model%domain%mesh%t6(:, e)) = .true.
+         end do
          do while (any(first /= before))
             before = first
             do e = 1, size(dofs%element, 2)
+               if (.not. present(e)) cycle
                associate (own => dofs%element(:LAST_U, e))
                   first(own) = minval(first(own))
                end associate
@@ -90,7 +99,7 @@ contains
          end do
          body = 0
          do i = 1, size(body)
-            if (dofs%of(AT_U_Z, i) > 0) body(i) = dofs%node(first(dofs%of(AT_U_Z, i)))
+            if (there(i) .and. dofs%of(AT_U_Z, i) > 0) body(i) = dofs%node(first(dofs%of(AT_U_Z, i)))
          end do
       end associate
    end function bodies_of

@@ -76,6 +76,38 @@ def test_a_run_is_taken_up_within_a_stage_and_at_its_end():
             check(f"taken up after step {steps}: same bytes of {file}", (folder / file).read_bytes() == before[file])
 
 
+FLOATS = """&scene name = 'floats' geometry = 'plane_strain' gravity = 10 /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1, 2, 3 z_cells = 1, 1, 1 /
+&elastic name = 's' young = 1e4 poisson = 0.2 /
+&region material = 's' void_ratio = 0.8 rho_s = 2.7 /
+&region group = 'block_1_2' material = 's' void_ratio = 0.8 rho_s = 2.7 stages = 'one' /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&stage name = 'one' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'two' analysis = 'static' duration = 1 dt = 1 /
+"""
+JOINS = f"""&scene name = 'joins' geometry = 'axisymmetric' /
+&mesh file = '{root}/verification/host/contact/blocks.msh' /
+&elastic name = 's' young = 1e4 poisson = 0 /
+&region group = 'lower' material = 's' void_ratio = 0 /
+&region group = 'upper' material = 's' void_ratio = 0 stages = 'two' /
+&fix group = 'upper_top' field = 'u_z' stages = 'two' /
+&fix group = 'axis' field = 'u_r' /
+&fix group = 'lower_bottom' field = 'u_z' /
+&stage name = 'one' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'two' analysis = 'static' duration = 1 dt = 1 /
+"""
+
+
+def test_a_body_needs_a_support_while_its_ground_is_there():
+    done = start("floats", FLOATS, "--check")
+    check("what stands on ground that leaves is named", done.returncode == 13 and
+          "Stage two: nothing holds the body of node" in done.stderr, (done.returncode, done.stderr))
+    done = start("joins", JOINS, "--check")
+    check("what joins later needs none before", done.returncode == 0, (done.returncode, done.stderr))
+
+
 SUCTIONS = """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' /
 &mesh r = 0, 1 r_cells = 1 z = 0, 1, 2 z_cells = 2, 2 /
 &elastic name = 's' young = 1e8 poisson = 0 /
