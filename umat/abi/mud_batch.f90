@@ -201,8 +201,8 @@ contains
          call c_f_pointer(given%list, arrays%list, [given%n])
          n = 0
          if (given%n > 0) n = maxval(arrays%list) + 1
-         if (given%n > 0) i = minval(arrays%list)
-         if (given%n > 0 .and. i < 0) status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(i, wp), 0.0_wp, huge(1.0_wp))
+         i = min(0, minval(arrays%list))
+         if (i < 0) status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(i, wp), 0.0_wp, huge(1.0_wp))
          if (status%code /= MUD_OK) return
       end if
       if (c_associated(given%material)) then
