@@ -106,6 +106,7 @@ contains
       logical :: raised, lanes, done(WIDTH)
       !$omp declare reduction (join : summary_t : add(omp_in, omp_out)) initializer (omp_priv = no_points())
 
+      lanes = .false.
       call find_materials(materials, n_materials, material, status)
       if (.not. c_associated(points)) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       if (status%code == MUD_OK) then
