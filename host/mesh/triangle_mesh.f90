@@ -4,7 +4,8 @@ module triangle_mesh
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: mesh_t, group_of_t, NAME_LENGTH, find_group, add_group, sides_of, triangles_beside
+   public :: mesh_t, group_of_t, NAME_LENGTH, find_group, add_group, nodes_of, sides_of, &
+             triangles_beside
 
    integer, parameter :: NAME_LENGTH = 64
 
@@ -54,6 +55,19 @@ contains
       if (.not. allocated(mesh%groups)) allocate (mesh%groups(0))
       mesh%groups = [mesh%groups, group]
    end subroutine add_group
+
+   !> Marks the nodes of some elements. (nodes)
+   pure function nodes_of(mesh, elements) result(there)
+      type(mesh_t), intent(in) :: mesh
+      logical, intent(in) :: elements(:)
+      logical :: there(size(mesh%x, 2))
+      integer :: e
+
+      there = .false.
+      do e = 1, size(elements)
+         if (elements(e)) there(mesh%t6(:, e)) = .true.
+      end do
+   end function nodes_of
 
    !> Lists the three sides of every triangle, as edges that have it on their left. (3, 3 elements)
    pure function sides_of(t6) result(sides)

@@ -8,7 +8,7 @@ module acting_places
    use model_types, only: model_t, action_t, SPACINGS
    use scene_parts, only: place_of, PRESCRIBED_OF_BODY
    use texts, only: short, whole
-   use triangle_mesh, only: group_of_t, triangles_beside
+   use triangle_mesh, only: group_of_t, nodes_of, triangles_beside
    use unknown_fields, only: AT_U_R
    implicit none (type, external)
    private
@@ -146,14 +146,9 @@ contains
    pure function nodes_of_ground(model, number) result(there)
       type(model_t), intent(in) :: model
       integer, intent(in) :: number   !< Of the stage.
-      logical :: there(size(model%domain%mesh%x, 2)), present(size(model%domain%region_of))
-      integer :: e
+      logical :: there(size(model%domain%mesh%x, 2))
 
-      there = .false.
-      present = ground_of(model, number)
-      do e = 1, size(present)
-         if (present(e)) there(model%domain%mesh%t6(:, e)) = .true.
-      end do
+      there = nodes_of(model%domain%mesh, ground_of(model, number))
       if (any(there)) there(model%domain%bodies) = .true.
    end function nodes_of_ground
 

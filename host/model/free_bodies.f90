@@ -2,7 +2,7 @@
 !> Bodies that no support holds in a stage without inertia. Elements, shared unknowns and plates connect nodes to
 !> bodies. docs/theory/host.md section 7.1.
 module free_bodies
-   use acting_places, only: given_in, ground_of, location_of
+   use acting_places, only: given_in, ground_of, nodes_of_ground, location_of
    use kinds, only: wp
    use contact_types, only: has_friction
    use element_sums, only: LAST_U
@@ -38,7 +38,7 @@ contains
          do s = 1, size(model%stages)
             model%on_contact(s)%words = ''
             if (model%stages(s)%has_inertia) cycle
-            body = bodies_of(model, ground_of(model, s))
+            body = bodies_of(model, s)
             held = held_in(model, s, near)
             touched = touched_in(model, s)
             do b = 1, size(body)
@@ -65,11 +65,11 @@ contains
 
    !> Finds for every node the first node of its body, which stands for it; 0 where it has no displacement, or its
    !> ground is not there.
-   function bodies_of(model, present) result(body)
+   function bodies_of(model, stage) result(body)
       type(model_t), intent(in) :: model
-      logical, intent(in) :: present(:)   !< (elements)
+      integer, intent(in) :: stage   !< Number of the stage.
       integer :: body(size(model%domain%mesh%x, 2))
-      logical :: there(size(body))
+      logical :: there(size(body)), present(size(model%domain%region_of))
       integer, dimension(model%dofs%n) :: first, before   ! First unknowns of the bodies of unknowns.
       integer, allocatable :: joined(:)
       integer :: e, i
@@ -77,11 +77,8 @@ contains
       associate (dofs => model%dofs)
          first = [(i, i=1, dofs%n)]
          before = 0
-         there = .false.
-         there(model%domain%bodies) = .true.
-         do e = 1, size(present)
-            if (present(e)) there(model%domain%mesh%t6(:, e)) = .true.
-         end do
+         present = ground_of(model, stage)
+         there = nodes_of_ground(model, stage)
          do while (any(first /= before))
             before = first
             do e = 1, size(dofs%element, 2)

@@ -10,6 +10,7 @@ module given_pressures
    use porous_domain, only: domain_t, COUPLED, UNDRAINED, DRY
    use scene_parts, only: place_of, PRESCRIBED_WORDS
    use texts, only: whole
+   use triangle_mesh, only: nodes_of
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -45,15 +46,16 @@ contains
       type(model_t), intent(in) :: model
       logical, intent(in) :: ground(:)                 !< (elements)
       real(wp) :: p(2, size(model%domain%mesh%x, 2))   !< (2, nodes)
-      logical :: meant(size(p, 2)), chosen(size(ground))
+      logical :: asked(size(p, 2)), meant(size(p, 2)), chosen(size(ground))
       integer :: i, n
 
       p = 0.0_wp
+      asked = nodes_of(model%domain%mesh, ground)
       do i = 1, size(model%initials)
          associate (one => model%initials(i), group => model%domain%mesh%groups(model%initials(i)%group))
             chosen = .false.
             chosen(group%elements) = ground(group%elements)
-            meant = nodes_of(model%domain, chosen) .or. .not. nodes_of(model%domain, ground)
+            meant = nodes_of(model%domain%mesh, chosen) .or. .not. asked
             do n = 1, size(group%nodes)
                if (any(model%domain%bodies == group%nodes(n))) cycle
                if (size(group%elements) > 0 .and. .not. meant(group%nodes(n))) cycle
@@ -63,19 +65,6 @@ contains
          end associate
       end do
    end function pressures_at_start
-
-   !> Finds the nodes of some elements.
-   pure function nodes_of(domain, elements) result(there)
-      type(domain_t), intent(in) :: domain
-      logical, intent(in) :: elements(:)
-      logical :: there(size(domain%mesh%x, 2))
-      integer :: e
-
-      there = .false.
-      do e = 1, size(elements)
-         if (elements(e)) there(domain%mesh%t6(:, e)) = .true.
-      end do
-   end function nodes_of
 
    !> Finds the pore water pressure at the start at a height [kPa]: linear in z, above a water table with a limit;
    !> docs/theory/host.md section 8.
@@ -116,7 +105,7 @@ contains
       type(domain_t), intent(in) :: domain
       logical :: flows(size(domain%mesh%x, 2))
 
-      flows = nodes_of(domain, domain%regions(domain%region_of)%drainage == COUPLED)
+      flows = nodes_of(domain%mesh, domain%regions(domain%region_of)%drainage == COUPLED)
    end function nodes_with_flow
 
    !> Edges of a group through which fluids can flow in.

@@ -9,6 +9,7 @@ module drained_regions
    use model_types, only: model_t, problem_t
    use porous_domain, only: domain_t, is_present, DRAINED, UNDRAINED
    use scene_term, only: scene_term_t
+   use triangle_mesh, only: nodes_of
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -105,11 +106,9 @@ contains
       if (.not. any(domain%center > 0)) return
       total = 0.0_wp
       users = 0
-      given = .false.
+      given = nodes_of(domain%mesh, domain%regions(domain%region_of)%drainage == DRAINED)
       do e = 1, size(domain%center)
          associate (center => domain%center(e))
-            ! An unknown, or a given value, stays.
-            if (domain%regions(domain%region_of(e))%drainage == DRAINED) given(domain%mesh%t6(:, e)) = .true.
             if (center == 0) cycle
             do k = 1, domain%n_p
                associate (node => domain%mesh%t6(k, e))
@@ -120,6 +119,7 @@ contains
             end do
          end associate
       end do
+      ! An unknown, or a given value, stays.
       do k = 1, size(x, 2)
          if (users(k) == 0 .or. given(k) .or. of(AT_P_W, k) > 0) cycle
          x(AT_P_W:AT_P_C, k) = total(:, k)/users(k)
