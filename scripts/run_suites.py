@@ -24,9 +24,11 @@ TIMEOUT = 900  # s; a suite takes seconds, the heaviest in the debug build minut
 
 
 def suites_of(build, tier):
+    """Name, command, environment and folder of each; those that take long come first, so that none is left over."""
     answer = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, check=True, capture_output=True, text=True)
-    for test in json.loads(answer.stdout)["tests"]:
-        properties = {p["name"]: p["value"] for p in test.get("properties", [])}
+    suites = [(test, {p["name"]: p["value"] for p in test.get("properties", [])})
+              for test in json.loads(answer.stdout)["tests"]]
+    for test, properties in sorted(suites, key=lambda suite: "fast" in suite[1].get("LABELS", [])):
         if tier == "fast" and "fast" not in properties.get("LABELS", []):
             continue
         environment = dict(os.environ, MUD_TIER=tier, **dict(e.split("=", 1) for e in properties.get("ENVIRONMENT", [])))
