@@ -190,7 +190,7 @@ contains
       real(wp), intent(in) :: x(:, :)
       integer, intent(in) :: corrections
       logical, intent(in) :: with_slopes
-      real(wp) :: rounding(size(self%interfaces))   !< Rounding of the forces of springs [kN].
+      real(wp) :: rounding(size(self%interfaces))   !< What a rounding changes the forces by, over epsilon [kN].
       integer :: i
 
       good = .true.
@@ -209,14 +209,18 @@ contains
             if (allocated(t%plate%motion)) call gather_on_plate(t%geometry, t%result, t%plate%motion, &
                                                                  t%master%x0, motion_of(t%plate, x), t%on_plate)
             self%active = self%active + count(t%result%active)
-            if (allocated(t%spring)) rounding(i) = ROUNDINGS*epsilon(1.0_wp)*norm2(spread(t%spring, 1, DISPLACEMENTS) &
-                                                                              *x(:DISPLACEMENTS, t%slave%node))
+            if (allocated(t%spring)) then
+               rounding(i) = norm2(spread(t%spring, 1, DISPLACEMENTS)*x(:DISPLACEMENTS, t%slave%node))
+            else
+               rounding(i) = t%geometry%options%penalty &
+                             *norm2(merge(t%result%weight*norm2(t%slave%x0, 1), 0.0_wp, t%result%active))
+            end if
          end associate
       end do
       self%corrections = corrections
       self%unsettled = any([(self%interfaces(i)%acts .and. self%interfaces(i)%result%turns, i=1, &
                              size(self%interfaces))])
-      self%rounding = norm2(rounding)
+      self%rounding = ROUNDINGS*epsilon(1.0_wp)*norm2(rounding)
    end function evaluate
 
    function message(self) result(text)
