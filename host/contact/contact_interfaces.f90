@@ -190,7 +190,7 @@ contains
       real(wp), intent(in) :: x(:, :)
       integer, intent(in) :: corrections
       logical, intent(in) :: with_slopes
-      real(wp) :: rounding(size(self%interfaces))   !< What a rounding changes the forces by, over epsilon [kN].
+      real(wp) :: rounding(size(self%interfaces))   !< Force of a relative change of 1 of what is subtracted [kN].
       integer :: i
 
       good = .true.
