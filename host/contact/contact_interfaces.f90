@@ -212,8 +212,11 @@ contains
             if (allocated(t%spring)) then
                rounding(i) = norm2(spread(t%spring, 1, DISPLACEMENTS)*x(:DISPLACEMENTS, t%slave%node))
             else
-               rounding(i) = t%geometry%options%penalty &
-                             *norm2(merge(t%result%weight*norm2(t%slave%x0, 1), 0.0_wp, t%result%active))
+               ! Of gaps, which are differences of the places along the force.
+               associate (along => abs(reshape(t%result%force(:size(t%slave%x0)), shape(t%slave%x0))))
+                  rounding(i) = t%geometry%options%penalty*norm2(t%result%weight*sum(along*abs(t%slave%x0), 1) &
+                                                                 /max(norm2(along, 1), tiny(1.0_wp)))
+               end associate
             end if
          end associate
       end do
