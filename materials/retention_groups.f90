@@ -146,6 +146,8 @@ contains
       else if (bad > 0) then
          call raise(fault, EXIT_INPUT, place//'pair '//whole(bad)//' has the saturation '//short(table%s(bad))// &
                     '; allowed is 0 to 1.')
+      else if (any(table%s(2:) > table%s(:size(table%s) - 1))) then
+         call raise(fault, EXIT_INPUT, place//'the saturations of a table must not rise with the suction.')
       end if
    end subroutine check_table
 end module retention_groups

@@ -190,7 +190,7 @@ contains
       real(wp), intent(in) :: x(:, :)
       integer, intent(in) :: corrections
       logical, intent(in) :: with_slopes
-      real(wp) :: rounding(size(self%interfaces))   !< Rounding of the forces of springs [kN].
+      real(wp) :: rounding(size(self%interfaces))   !< Force of a relative change of 1 of what is subtracted [kN].
       integer :: i
 
       good = .true.
@@ -209,14 +209,21 @@ contains
             if (allocated(t%plate%motion)) call gather_on_plate(t%geometry, t%result, t%plate%motion, &
                                                                  t%master%x0, motion_of(t%plate, x), t%on_plate)
             self%active = self%active + count(t%result%active)
-            if (allocated(t%spring)) rounding(i) = ROUNDINGS*epsilon(1.0_wp)*norm2(spread(t%spring, 1, DISPLACEMENTS) &
-                                                                              *x(:DISPLACEMENTS, t%slave%node))
+            if (allocated(t%spring)) then
+               rounding(i) = norm2(spread(t%spring, 1, DISPLACEMENTS)*x(:DISPLACEMENTS, t%slave%node))
+            else
+               ! Of gaps, which are differences of the places along the force.
+               associate (along => abs(reshape(t%result%force(:size(t%slave%x0)), shape(t%slave%x0))))
+                  rounding(i) = t%geometry%options%penalty*norm2(t%result%weight*sum(along*abs(t%slave%x0), 1) &
+                                                                 /max(norm2(along, 1), tiny(1.0_wp)))
+               end associate
+            end if
          end associate
       end do
       self%corrections = corrections
       self%unsettled = any([(self%interfaces(i)%acts .and. self%interfaces(i)%result%turns, i=1, &
                              size(self%interfaces))])
-      self%rounding = norm2(rounding)
+      self%rounding = ROUNDINGS*epsilon(1.0_wp)*norm2(rounding)
    end function evaluate
 
    function message(self) result(text)

@@ -200,7 +200,7 @@ contains
    end subroutine build_initial
 
    !> Builds a &fix. Fault EXIT_GROUP: its group or history does not exist. EXIT_INPUT: an acceleration of a pressure,
-   !> or one that has no history or is held; a field that the scene lacks.
+   !> or one that has no history or is held; a field that the scene lacks; an interval of time that is empty.
    subroutine build_fix(k, model, fault)
       type(key_table_t), intent(inout) :: k
       type(model_t), intent(inout) :: model
@@ -236,6 +236,9 @@ contains
                (fix%field >= AT_P_C .and. .not. model%domain%with_c)) then
          call raise(fault, EXIT_INPUT, place_of(fix)//'the scene has no field '//PRESCRIBED_WORDS(fix%field)// &
                     '; see fields in &scene.')
+      else if (.not. fix%until > fix%from) then
+         call raise(fault, EXIT_INPUT, place_of(fix)//'from = '//short(fix%from)//' s and until = '// &
+                    short(fix%until)//' s leave this &fix no time to act.')
       end if
       fix%what = '&fix'
       fix%supports = .true.

@@ -1,12 +1,13 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings about supports, loads and histories of a scene that are allowed but usually mistakes.
 module boundary_warnings
-   use acting_places, only: given_in, acting_stages, are_on_axis
+   use acting_places, only: given_in, acting_stages, are_on_axis, facing_edges
    use kinds, only: wp
    use given_pressures, only: nodes_with_flow, edges_with_flow
    use warnings, only: print_warning
    use model_types, only: model_t, acting_t, fix_t
-   use scene_parts, only: amplitude_at, place_of, LOAD_AIR, PRESCRIBED_P_A, PRESCRIBED_WORDS
+   use scene_parts, only: amplitude_at, place_of, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, PRESCRIBED_P_A, &
+                          PRESCRIBED_WORDS
    use texts, only: short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_P_W, AT_P_C
    implicit none (type, external)
@@ -167,13 +168,17 @@ contains
    end subroutine look_at_histories
 
    !> Supports of pressures and inflows that act on a part of their group alone, or in static stages alone; dashpots and
-   !> accelerations without a dynamic stage; supports that take nodes off the axis.
+   !> accelerations without a dynamic stage; supports that take nodes off the axis, or whose time no stage has; loads on
+   !> the axis, forces along r on a plate that moves vertically, and rain on what faces sideways or down.
    subroutine look_at_places(model)
       type(model_t), intent(in) :: model
-      logical, dimension(size(model%domain%mesh%x, 2)) :: flows, on_axis
+      logical, dimension(size(model%domain%mesh%x, 2)) :: flows, on_axis, vertical
       integer :: i
 
       on_axis = are_on_axis(model)
+      vertical = .false.
+      vertical(model%domain%bodies) = .true.
+      vertical(model%domain%bodies_along_r) = .false.
       flows = nodes_with_flow(model%domain)
       do i = 1, size(model%fixes)
          associate (one => model%fixes(i), nodes => model%domain%mesh%groups(model%fixes(i)%group)%nodes)
@@ -184,6 +189,13 @@ contains
                 max(abs(one%value), abs(one%value_slope)) > 0.0_wp) call print_warning( &
                place_of(one)//'u_r of nodes at r = 0 is prescribed: in axial symmetry they stay '// &
                'on the axis, and beside nodes that leave it the hoop strain has no bound.')
+            associate (start => model%stages%start)
+               if (.not. any(one%in_stage .and. start < one%until .and. one%from < start + model%stages%duration)) &
+                  call print_warning(place_of(one)//'this &fix has no effect: its stages begin at '// &
+                     short(minval(start, mask=one%in_stage))//' s and end at '// &
+                     short(maxval(start + model%stages%duration, mask=one%in_stage))//' s, and from and until are '// &
+                     'times of the run.')
+            end associate
             if (one%field <= DISPLACEMENTS) cycle
             call look_at_stages(one, PRESCRIBED_WORDS(one%field))
             if (.not. all(flows(nodes))) call print_warning(place_of(one)// &
@@ -193,9 +205,23 @@ contains
          end associate
       end do
       do i = 1, size(model%loads)
-         associate (one => model%loads(i))
+         associate (one => model%loads(i), nodes => model%domain%mesh%groups(model%loads(i)%group)%nodes)
+            if (one%kind == LOAD_FORCE_R .and. all(vertical(nodes))) then
+               call print_warning(place_of(one)//'the force has no effect: the plate '''//trim(one%group_name)// &
+                                  ''' moves vertically alone; see motion of &plate.')
+            else if (one%kind /= LOAD_FORCE_Z .and. all(on_axis(nodes))) then
+               call print_warning(place_of(one)//'the load has no effect: all nodes of '''//trim(one%group_name)// &
+                                  ''' lie at r = 0, where nothing moves along r and a boundary has no area.')
+            end if
             if (.not. one%flows) cycle
             call look_at_stages(one, 'the inflow')
+            if (one%falls) then
+               associate (edges => facing_edges(model, one%group, one%in_stage), r => model%domain%mesh%x(1, :))
+                  ! The ground is on the left: what looks upwards runs against r.
+                  if (.not. any(r(edges(2, :)) < r(edges(1, :)))) call print_warning(place_of(one)// &
+                     'no rain falls on '''//trim(one%group_name)//''': none of its edges faces upwards.')
+               end associate
+            end if
             associate (edges => edges_with_flow(model%domain, one%group))
                if (.not. all(edges)) call print_warning(place_of(one)//'fluid flows in through '// &
                   whole(count(edges))//' of the '//whole(size(edges))//' edges of '''//trim(one%group_name)// &

@@ -86,6 +86,10 @@ contains
       call read_stages(k, model, side%in_stage)
       if (k%lists) return
       side%scene_item_t = item_of(k%group)
+      ! Poisson's ratio is -1 at least: c_p**2 is 4/3 of c_s**2 or more.
+      if (k%given('c_p') .and. 3*side%c_p**2 < 4*side%c_s**2) call print_warning(place_of(side)//'c_p = '// &
+         short(side%c_p)//' m/s beside c_s = '//short(side%c_s)//' m/s: in no solid are waves of pressure so slow; '// &
+         'are the two keys exchanged?')
       side%what = '&'//NAME
       side%along_normal = .true.
       side%bears = .true.

@@ -204,15 +204,19 @@ contains
       type(problem_t), intent(inout) :: problem
       real(wp), intent(in) :: residual(:)
       logical, intent(inout) :: changed
-      real(wp) :: side, least
+      real(wp) :: side, slope, least
       integer :: i
 
       self%stuck = 0
       associate (c => problem%constraint, pattern => problem%pattern, values => problem%assembly%values)
          do i = 1, problem%dofs%n
             if (c%limited_by(i) == 0) cycle
-            side = residual(i) + abs(values(entry_of(pattern, i, i))) &
-                                 *(problem%next%x(problem%dofs%field(i), problem%dofs%node(i)) - c%target(i))
+            associate (node => problem%dofs%node(i))
+               slope = values(entry_of(pattern, i, i))
+               ! The air keeps its pressure there: what p_w gains the suction loses, and the pores fill.
+               if (c%air(node)) slope = slope - values(entry_of(pattern, i, problem%dofs%of(AT_P_C, node)))
+               side = residual(i) + abs(slope)*(problem%next%x(problem%dofs%field(i), node) - c%target(i))
+            end associate
             least = LEAST_REACTION*problem%newton%tolerance*problem%assembly%scale(i)
             if (c%fixed(i) .and. side < -least) then
                if (self%releases(i) >= MOST_RELEASES) then

@@ -307,6 +307,7 @@ def test_a_table_of_3001_pairs_is_the_curve():
     for name, law, words in (("alpha", "law = 'van_genuchten' n = 2", "needs alpha"),
                              ("n", "law = 'van_genuchten' alpha = 1 n = 0.9", "above 1"),
                              ("pair", "law = 'table' file = 'bad.txt'", "allowed is 0 to 1"),
+                             ("rise", "law = 'table' suction = 0, 5, 9 saturation = 1, 0.5, 0.6", "must not rise"),
                              ("file", "law = 'table' file = 'none.txt'", "cannot be read")):
         (work / "bad.txt").write_text("0 1\n10 1.5\n")
         done, _ = start(column.replace(old, law), f"refused_{name}")

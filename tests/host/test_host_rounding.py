@@ -118,6 +118,32 @@ def test_units_and_sizes_do_not_change_an_answer():
             check(f"{size} m, {young} kPa, from {start_at}", abs(other / one - 1) < 0.01 * TOLERANCE, (other, one))
 
 
+# A plate rests while nothing changes, on ground whose surface is at `top`.
+RESTING = """&scene name = 'resting' geometry = 'plane_strain' fields = 'u' /
+&mesh r = 0, 0.5, 1 r_cells = 2, 2 z = {base}, {top} z_cells = 2 /
+&elastic name = 'soil' young = 2e4 poisson = 0.3 /
+&region material = 'soil' void_ratio = 0 viscosity = 2e3 /
+&stage name = 's' analysis = 'quasi_static' duration = 2 dt = 0.1 tolerance = 1e-6 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&plate name = 'p' r = 0, 0.5 z = {face} mass = 1 force = -5 /
+&contact name = 'c' slave = 'top' master = 'p' penalty = 1e6 /
+"""
+
+
+@pytest.mark.parametrize("top", (100, -37.25, 1000))
+def test_a_plate_rests_on_ground_at_any_height(top):
+    # Gaps are differences of heights: their rounding, times the penalty, is no force that is left open.
+    sunk = {}
+    for at in (0, top):
+        done = start("resting", RESTING.format(base=at - 1, top=at, face=f"{at - 1e-6:.17g}"))
+        check(f"surface at {at} m runs", done.returncode == 0, done.stderr)
+        sunk[at] = float(tables.rows(work / "resting/contact.csv")[-1]["p.u_z"])
+    # The height of the face is rounded too, to a part of 1e-13 m: 1e-8 of the settlement.
+    check("to the same settlement", abs(sunk[top] / sunk[0] - 1) < 1e-6, sunk)
+
+
 FLIGHT = """&scene name = 'flight' geometry = 'plane_strain' fields = 'u' gravity = {gravity} /
 &mesh r = 0, 0.4, 2 r_cells = 2, 3 z = -2, 0 z_cells = 4 /
 &elastic name = 'soil' young = 3e4 poisson = 0.3 /

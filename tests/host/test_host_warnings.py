@@ -120,6 +120,29 @@ DOUBTS = [
      ["scene.nml:12: the acceleration has no effect: no stage in which it acts"]),
     ("nodes that leave the axis", "'left' field = 'u_r'", "'left' field = 'u_r' value = 1e-3",
      ["scene.nml:12: u_r of nodes at r = 0 is prescribed", "the hoop strain has no bound"]),
+    ("support that ends before the run", "'right' field = 'u_r'", "'right' field = 'u_r' until = 0",
+     ["scene.nml:13: this &fix has no effect: its stages begin at 0 s and end at 1 s"]),
+    ("support that begins after its stages", "&load",
+     "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"
+     "&fix group = 'top' field = 'u_r' stages = 'load' from = 1 /\n&load",
+     ["this &fix has no effect", "end at 1 s"]),
+    ("support of a stage by times of the stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 "
+     "dt = 1 /\n&fix group = 'top' field = 'u_r' stages = 'rest' until = 0.5 /\n&load",
+     ["this &fix has no effect: its stages begin at 1 s and end at 2 s, and from and until are times of the run"]),
+    ("pressure on the axis", "'top' kind = 'pressure'", "'left' kind = 'pressure'",
+     ["scene.nml:17: the load has no effect: all nodes of 'left' lie at r = 0"]),
+    ("force away from the axis", "'top' kind = 'pressure'", "'left' kind = 'force_r'",
+     ["the load has no effect: all nodes of 'left' lie at r = 0"]),
+    ("force along r on a plate that moves vertically", "&load", "&plate name = 'lid' r = 0, 2 z = 1 mass = 1 /\n"
+     "&fix group = 'lid' field = 'u_z' /\n&load group = 'lid' kind = 'force_r' value = 1 /\n&load",
+     ["scene.nml:19: the force has no effect: the plate 'lid' moves vertically alone"]),
+    ("rain on a wall", "&load", "&load group = 'right' kind = 'rain' value = 1e-8 /\n&load",
+     ["scene.nml:17: no rain falls on 'right': none of its edges faces upwards"]),
+    ("rain from below", "&load", "&load group = 'bottom' kind = 'rain' value = 1e-8 /\n&load",
+     ["no rain falls on 'bottom'"]),
+    ("speeds of waves that are exchanged", "&load", "&stage name = 'wave' analysis = 'dynamic' duration = 1 dt = 1 /\n"
+     "&absorbing group = 'bottom' rho = 2 c_p = 200 c_s = 400 stages = 'wave' /\n&load",
+     ["c_p = 200 m/s beside c_s = 400 m/s", "exchanged"]),
     ("inflow of a static stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 dt = 1 /\n"
      "&load group = 'top' kind = 'water' value = 1e-6 stages = 'rest' /\n&load",
      ["the inflow has no effect: the stages in which it acts are static"]),

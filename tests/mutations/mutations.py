@@ -373,7 +373,7 @@ FIELD = [
     ("a face draws in water", (LIMITS, "if (c%fixed(i) .and. side < -least) then", "if (c%fixed(i) .and. side < -huge(least)) then")),
     ("a face lets no water out", (LIMITS, "else if (.not. c%fixed(i) .and. side > least) then",
                                   "else if (.not. c%fixed(i) .and. side > huge(least)) then")),
-    ("a side is chosen by the flow alone", (LIMITS, "+ abs(values(entry_of(pattern, i, i)))", "+ 0*abs(values(entry_of(pattern, i, i)))")),
+    ("a side is chosen by the flow alone", (LIMITS, "residual(i) + abs(slope)", "residual(i) + 0*abs(slope)")),
     ("friction slides without a limit", (FRICTION, "if (.not. abs(t%value) > limit) return", "if (.not. abs(t%value) > huge(limit)) return")),
     ("friction of a node that was open from the start of the step", (FRICTION, "t%value = stiffness*share*slip", "t%value = stiffness*slip")),
     ("sliding forgets that the pressure changes", (FRICTION, "t%by_gap = -sign(options%friction*options%penalty, t%value)", "t%by_gap = 0.0_wp")),
