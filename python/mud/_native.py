@@ -71,7 +71,7 @@ def _structure(header: str, name: str, **known: type) -> type[ctypes.Structure]:
 
 _text, _text_triax = _header("mud.h"), _header("mud_triax.h")
 CONSTANTS = {**_constants(_text), **_constants(_text_triax)}
-Report = _structure(_text, "mud_report")
+Report = mud_report = _structure(_text, "mud_report")  # by both names, or pickle does not find it
 Blocks = _structure(_text, "mud_blocks")
 Points = _structure(_text, "mud_points")
 Summary = _structure(_text, "mud_summary", mud_report=Report)

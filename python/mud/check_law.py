@@ -30,6 +30,12 @@ def check_law(law: Law, at: Setting | None = None, only: Sequence[str] = (), pro
     unknown = [name for name in only if name not in CHECKS]
     if unknown:
         raise ValueError(f"there is no check {unknown[0]!r}; there are: {', '.join(CHECKS)}")
+    if law.n_state < 0:
+        raise ValueError(f"n_state (--nstatv) is {law.n_state}; it is 0 or more")
+    given = {"stress": at.stress, "suction": law.suction, "props": law.props, "statev": law.begin()}
+    for name, values in given.items():
+        if not np.isfinite(np.asarray(values, dtype=float)).all():
+            raise ValueError(f"{name} (--{name}) has a value that is not finite")
     _room_for_state(law)
     if law.start_state is not None and len(law.start_state) != law.n_state:
         raise ValueError(
@@ -175,13 +181,16 @@ def main(words: Sequence[str] | None = None) -> int:
             start_state=given.statev,
         )
         at = Setting(np.array(list(given.stress) + [0.0] * (6 - len(given.stress))), given.reach, given.increments)
+        given.output.mkdir(parents=True, exist_ok=True)  # what cannot be written is told before the checks
         findings = check_law(law, at, given.only, lambda line: print(line, flush=True))
-    except ValueError as problem:
+    except (ValueError, OSError) as problem:
         print(f"mud_check_law: {problem}", file=sys.stderr)
         return 2
     write_report(findings, law, given.output)
-    count = {v: sum(f.verdict == v for f in findings) for v in (FAULT, NOTE)}
-    print(f"{len(findings)} findings, {count[FAULT]} faults, {count[NOTE]} notes: {given.output / 'report.md'}")
+    count = {v: sum(f.verdict == v for f in findings) for v in (FAULT, NOTE, UNJUDGED)}
+    unjudged = f", {count[UNJUDGED]} not judged" if count[UNJUDGED] else ""
+    page = given.output / "report.md"
+    print(f"{len(findings)} findings, {count[FAULT]} faults, {count[NOTE]} notes{unjudged}: {page}")
     return 1 if count[FAULT] else 0
 
 

@@ -40,7 +40,7 @@ class TestStopped(MudError):
 
     __test__ = False  # not a test of pytest
 
-    def __init__(self, sentence: str, result: object):
+    def __init__(self, sentence: str, result: object = None):  # pickle gives the sentence alone, then the rest
         super().__init__(sentence)
         self.result = result
 

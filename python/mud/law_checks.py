@@ -99,7 +99,8 @@ def go(law: Law, point: Point, path: Iterable[np.ndarray], dt: float = 1.0) -> P
     for i, d_strain in enumerate(path):
         answer = step(law, point, d_strain, dt)
         if answer.refused:
-            raise Refusal(f"increment {i + 1} of a path was refused (PNEWDT {answer.pnewdt:g})")
+            how = f"was refused (PNEWDT {answer.pnewdt:g})" if answer.cut else "gave numbers that are not finite"
+            raise Refusal(f"increment {i + 1} of a path {how}")
         point = Point(answer.stress, answer.state, point.strain + d_strain, point.time + dt, answer.tangent)
     return point
 
@@ -131,7 +132,8 @@ def first_call(law: Law, at: Setting) -> list[Finding]:
     start = law.begin()
     one = law.call(at.stress, start, np.zeros(6))
     if one.refused:
-        return [Finding(name, FAULT, "the first call, without strain, is refused or gives a stress that is not finite")]
+        sentence = "the first call, without strain, is refused or gives a stress or STATEV that is not finite"
+        return [Finding(name, FAULT, sentence)]
     out = []
     told = law.told()
     if told is not None and told.non_symmetric == 0 and norm(one.tangent - one.tangent.T) > 1e-6 * norm(one.tangent):
@@ -142,6 +144,9 @@ def first_call(law: Law, at: Setting) -> list[Finding]:
     part = one.tangent[np.ix_(law._places(), law._places())]
     if not np.isfinite(part).all() or norm(part) == 0.0 or np.linalg.matrix_rank(part) < len(part):
         out.append(Finding(name, FAULT, "DDSDDE of the first call is zero, singular or not finite: hosts factorise it"))
+    elif part.diagonal().min() < 0.0:
+        sentence = "DDSDDE of the first call answers a strain by a stress of the other sign (tension is positive)"
+        out.append(Finding(name, FAULT, sentence, part.diagonal().min()))
     two = law.call(one.stress, one.state, np.zeros(6))
     moved = norm(two.stress - one.stress) / at.size
     if two.refused or moved > 1e-9:
@@ -164,7 +169,7 @@ def arrays(law: Law, at: Setting) -> list[Finding]:
     broken: set[str] = set()
     point = begin(law, at)
     broken.update(law.call(at.stress, law.begin(), np.zeros(6)).broken)
-    for d in straight(at, 20):
+    for d in straight(at):
         answer = step(law, point, d)
         broken.update(answer.broken)
         if answer.refused:
@@ -212,8 +217,9 @@ def two_materials(law: Law, at: Setting) -> list[Finding]:
     """Two materials in turn: PROPS that differ by 0.1 %."""
     other = law.like(props=[p if float(p).is_integer() and abs(p) < 10 else 1.001 * p for p in law.props])
     path = straight(at)
+    own = apart(_ends, law, at, path)
     try:
-        alone = apart(_ends, law, at, path), apart(_ends, other, at, path)
+        alone = own, apart(_ends, other, at, path)
     except Refusal:
         return [Finding("two materials", UNJUDGED, "PROPS that differ by 0.1 % are refused")]
     both = apart(_interleaved, law, other, at, path, path)
@@ -352,11 +358,18 @@ def tangent(law: Law, at: Setting) -> list[Finding]:
     loaded = go(law, start, straight(at, at.increments // 2))
     unit = at.step / np.abs(at.step).max()
     errors, worst_other = [], {k: 0.0 for k in _DISGUISES}
-    is_elastic, turns, skew = True, 0.0, 0.0
+    turns, skew = 0.0, 0.0
+    # Of a start on the yield surface one of the two ways is elastic.
+    least = sizes[-1] * unit
+    is_elastic = any(
+        norm(_differences(law, start, d, 1e-2 * sizes[-1]) - elastic) < 1e-3 * norm(elastic) for d in (least, -least)
+    )
     for size in sizes:
         worst = 0.0
         for point in (start, loaded):
             answer = go(law, point, [size * unit])
+            if not np.isfinite(answer.tangent).all():
+                return [Finding("tangent", FAULT, f"DDSDDE of an increment of {size:g} is not finite")]
             # A law may treat small changes of direction as none: the differences that come nearest count.
             tried = [_differences(law, point, size * unit, h * size) for h in (1e-4, 1e-3, 1e-2)]
             exact = min(tried, key=lambda t: norm(answer.tangent - t))
@@ -505,7 +518,7 @@ def drot(law: Law, at: Setting) -> list[Finding]:
         return [Finding("DROT", UNJUDGED, "only of a UMAT with six components")]
     mid = go(law, begin(law, at), straight(at))
     path = [-d for d in straight(at, at.increments // 4)]
-    plain = go(law, mid, path).stress
+    plain = go(law, mid, [np.zeros(6), *path]).stress
     body = Point(turned(mid.stress, Q, False), mid.state, mid.strain, mid.time)
     answer = step(law, body, np.zeros(6), rotation=Q)
     if answer.refused:
@@ -515,6 +528,9 @@ def drot(law: Law, at: Setting) -> list[Finding]:
     error = norm(turned(plain, Q, False) - other) / (norm(plain - mid.stress) + _EPS)
     if error < 1e-6:
         return [Finding("DROT", PASS, "a body that turns answers as one at rest", error)]
+    if not np.any(law.begin()) and _objectivity(law, at) > 1e-3:
+        sentence = "answers differ in turned directions without DROT too (conventions)"
+        return [Finding("DROT", UNJUDGED, sentence)]
     return [
         Finding("DROT", FAULT, "tensors of STATEV are not turned with DROT: wrong where bodies turn (NLGEOM)", error)
     ]

@@ -29,7 +29,7 @@ _INITIALISE, _STRESSES, _STIFFNESS, _HOW_MANY, _ATTRIBUTES = 1, 2, 3, 4, 5
 
 @dataclass
 class Answer:
-    """What one call gave. ``refused``: PNEWDT below 1 (IABORT of a UDSM), or a stress that is not finite."""
+    """What one call gave. ``refused``: PNEWDT below 1 or NaN (IABORT of a UDSM), or a stress that is not finite."""
 
     stress: np.ndarray
     state: np.ndarray
@@ -39,7 +39,7 @@ class Answer:
 
     @property
     def cut(self) -> bool:
-        return self.pnewdt < 1.0
+        return not self.pnewdt >= 1.0
 
     @property
     def finite(self) -> bool:
@@ -223,6 +223,8 @@ class Law:
         )
         broken = [f"{name} beyond its end" for name, x in {**arrays, **kept}.items() if not x.intact]
         broken += [name for name, x in kept.items() if x.changed]
+        if not self.n_state and arrays["STATEV"].changed:
+            broken.append("STATEV beyond its end")
         return Answer(
             self._from_law(arrays["STRESS"].values, stress),
             arrays["STATEV"].values[: self.n_state].copy(),
@@ -306,6 +308,8 @@ class _PlaxisDoor:
     @property
     def broken(self) -> tuple[str, ...]:
         beyond = [f"{name} beyond its end" for name, x in {**self.kept, **self.free}.items() if not x.intact]
+        if not self.law.n_state and self.free["StVar"].changed:
+            beyond.append("StVar beyond its end")
         return (*beyond, *[name for name, x in self.kept.items() if x.changed])
 
 

@@ -152,7 +152,10 @@ class Material(Points, Mapping):
             self.title = str(entries.pop("name", path.stem))
             entries.pop("reference", None)
             self.tested = {name: _tested(path, name, entries.pop(name)) for name in TESTED if name in entries}
-            self._set(entries)
+            try:
+                self._set(entries)
+            except InputError as problem:
+                raise type(problem)(f"{path}: {problem}") from None
         self._set(values)
         self.props.flags.writeable = False
         self._storage = np.zeros((1, _native.mud.mud_prepared_size()))

@@ -209,6 +209,7 @@ class Points:
             if array is not None:
                 need(array, (n, *_SHAPES.get(name, ())), name)
                 setattr(points, name, array.ctypes.data)
+        _apart(given, results)
         for name, array, size in (("list", listed, None), ("material", material, n), ("status", answer.status, n)):
             if array is not None:
                 need(array, (len(array) if size is None else size,), name, np.intc)
@@ -221,6 +222,11 @@ class Points:
             if often.max() > 1:  # in place it would be updated again
                 raise InputError(f"points has the number {np.argmax(often)} more than once")
             points.n = len(listed)
+        if material is not None:
+            used = material if listed is None else material[listed]
+            wrong = used[(used < 0) | (used >= len(self._storage))]
+            if len(wrong):
+                raise InputError(f"material has the number {wrong[0]}; the list has {len(self._storage)}, from 0")
         summary = _native.Summary()
         failed = function(self._storage.ctypes.data, len(self._storage), byref(points), byref(summary))
         if failed < 0:
@@ -260,6 +266,19 @@ def need(array: np.ndarray, shape: tuple[int, ...], name: str, dtype: type = np.
         )
     if array.shape != shape:
         raise InputError(f"{name} has the shape {array.shape}, needed is {shape}")
+
+
+def _apart(given: dict[str, np.ndarray | None], results: dict[str, np.ndarray | None]) -> None:
+    """Refuses results that cannot be written, and those that lie across an input: the next point would read them."""
+    for name, array in results.items():
+        if array is None:
+            continue
+        if not array.flags.writeable:
+            raise InputError(f"{name} is read-only: results are written to it")
+        for other, read in given.items():
+            in_place = read is not None and name[:-1] == other[:-1] and array.ctypes.data == read.ctypes.data
+            if read is not None and not in_place and np.may_share_memory(array, read):
+                raise InputError(f"{name} overlaps {other}: results are written to the input itself or apart from it")
 
 
 def _new_blocks(answer: BatchResponse, n: int) -> None:

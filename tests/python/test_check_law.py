@@ -33,6 +33,10 @@ PLANTED = (
     (16, "first call", "zero, singular or not finite"),
     (17, "large increments", "the strain is lost without a word"),
     (18, "tangent", "one stiffness for loading and unloading"),
+    (19, "tangent", "is not finite"),
+    (20, "tangent", "neither the derivative"),
+    (21, "first call", "of the other sign"),
+    (22, "first call", "is refused"),
 )
 NOTES = (10, 18)
 
@@ -90,6 +94,25 @@ def test_a_planted_mistake_is_found(mistake, name, words, capsys):
     lines = [line for line in told.splitlines() if line.startswith(verdict)]
     check(f"planted mistake {mistake} is found by '{name}'", code == (verdict == "fault")
           and any(f" {name}: " in line and words in line for line in lines), told)
+
+
+def test_what_is_no_mistake_of_drot_or_of_the_law_is_told_as_what_it_is():
+    # It writes its one state variable where it yields, behind the first fifth of the path.
+    done = run(build / "tests/umats/drucker_prager.so", "--props=2e4,0.3,0.5,0.2,10,1000,0.05,-15,0", "--reach=0.02",
+               "--only=arrays")
+    check("a state variable although there is none", done.returncode == 1 and "STATEV beyond its end" in done.stdout,
+          done.stdout + done.stderr)
+    done = planted(4, "--only=DROT")
+    check("answers that depend on the directions anyhow are no mistake of DROT",
+          done.stdout.startswith("not judged") and "1 not judged" in done.stdout,
+          done.stdout + done.stderr)
+    (work / "file").write_text("")
+    for words, told in (("--nstatv=-1", "it is 0 or more"), ("--stress=nan,1,1", "(--stress) has a value"),
+                        ("--props=nan", "(--props) has a value"), ("--suction=inf", "(--suction) has a value"),
+                        (f"--output={work / 'file'}", "File exists")):
+        done = planted(0, words)
+        check(f"refused: {words}", done.returncode == 2 and told in done.stderr and not done.stdout,
+              done.stdout + done.stderr)
 
 
 def test_mud_as_plaxis_calls_it_has_no_fault():

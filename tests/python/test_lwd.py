@@ -28,8 +28,10 @@ sys.path.insert(0, str(root / "python"))
 os.environ["MUD_LIBRARY_DIR"] = str(build)
 import tables  # noqa: E402 (checking knows its folder)
 from mud.errors import InputError  # noqa: E402
+from mud.lwd import answers  # noqa: E402
 from mud.lwd.device import device_of, record_of  # noqa: E402
 from mud.lwd.ground import Layer, Test, scene_of  # noqa: E402
+from mud.study.runs import Failed  # noqa: E402
 
 SMALL = ("--width", "0.9", "--depth", "0.9", "--drops", "1", "1")
 ELASTIC = ("--material", "elastic:30000:0.3", "--void-ratio", "0.6")
@@ -182,6 +184,18 @@ def test_elastic_ground_gives_the_same_deflection_every_time_and_takes_it_back()
     check("the largest is in the results", whole >= max(float(r["deflection_error_mm"]) for r in history) * 0.99, whole)
 
 
+def test_a_loose_plate_on_hard_ground_reads_what_a_tied_one_does():
+    # The contact is a spring: of its default stiffness it would halve the modulus of this ground.
+    read = []
+    for tied in ([], ["--tied"]):
+        words = ("--material", "elastic:2e7:0.3", "--void-ratio", "0.6", "--drops", "0", "1", *SMALL[:4], *tied)
+        done = lwd("test", *words, "--quiet", "--no-page", "--output", "hard" + "".join(tied))
+        check("it runs", done.returncode == 0, done.stderr)
+        read.append(float(done.stdout.split()[1]) if done.returncode == 0 else math.nan)
+    # To the hundredth by which the contact gives way, and what the two models of the plate differ by at its rim.
+    check("the modulus of both plates", abs(read[0] / read[1] - 1) < 0.04, read)
+
+
 def test_a_mass_that_falls_on_a_spring_gives_the_pulse_of_the_closed_form():
     # 10 kg from 0.72 m on 250 kN/m and ground that hardly moves: m g + root((m g)^2 + 2 m g h k) = 6.042 kN.
     words = ("--void-ratio", "0.6", "--drops", "0", "1", "--width", "0.9", "--depth", "0.9")
@@ -290,6 +304,12 @@ def test_what_cannot_be_computed_is_refused_in_a_sentence():
         ((*ELASTIC, "--poisson", "0.6"), "it lies from 0 to 0.5"),
         ((*ELASTIC, "--rain", "5"), "rain needs its rate in mm/h and its duration"),
         ((*ELASTIC, "--rain", "5", "--rain-hours", "1"), "rain falls on soil: the upper layer is elastic"),
+        ((*ELASTIC, "--suction", "30"), "elastic ground is dry"),
+        (("--material", "elastic:3e4:0.3:1", "--void-ratio", "0.6"), "an elastic layer is elastic:YOUNG"),
+        ((*ELASTIC, "--plate-mass", "15000"), "1.5e+04 kg rest on the ground, as in no device"),
+        ((*ELASTIC, "--buffer", "354", "--fall-mass", "10000"), "1e+04 kg fall, as in no device"),
+        ((*ELASTIC, "--grains", "26.5"), "the density of the grains is 26.5; it is above 0 and below 10 Mg/m3"),
+        ((*ELASTIC, "--permeability", "1e-4"), "below 1e-06 m2, of 10 m/s of water"),
     ):
         done = lwd("test", *words, "--output", "refused")
         check(f"{words} is refused", done.returncode == 2 and said in done.stderr, done.stderr)
@@ -299,6 +319,21 @@ def test_what_cannot_be_computed_is_refused_in_a_sentence():
     # A run that ends on its own: the host's sentence.
     done = lwd("test", *SAND, "--void-ratio", "5", "--suction", "20", "--output", "fails")
     check("a run that fails", done.returncode == 3 and "the run with fineness 0.5" in done.stderr, done.stderr)
+
+
+def test_a_plate_that_does_not_go_down_has_no_modulus(monkeypatch):
+    # A heavy plate that still rises after the drop before; a modulus divides by the deflection.
+    test = Test(device_of("zorn"), (Layer("elastic:30000"),), seating=0, measured=1)
+    time = np.linspace(0.0, test.starts[0] + test.interval, 50)
+    plate = {"time": time, "plate.u_z": time, "plate.v_z": np.ones(50), "plate.a_z": np.zeros(50)}
+    run = type("Run", (), {"table": lambda self, name: plate, "histories": {}})
+    monkeypatch.setattr(answers, "HostRun", lambda folder: run())
+    try:
+        answers.answers_of(test, "folder")
+        told = "an answer"
+    except Failed as problem:
+        told = str(problem)
+    check("it fails in a sentence", "the plate does not go down in drop_1" in told, told)
 
 
 def test_a_finished_test_is_found_and_an_interrupted_one_goes_on():

@@ -221,6 +221,12 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
         and isinstance(fault, mud.IncrementError),
         fault,
     )
+    sent = pickle.loads(pickle.dumps((fault, batch)))
+    check(
+        "they go to other processes",
+        str(sent[0]) == str(fault) and sent[0].report.pnewdt == fault.report.pnewdt and sent[1].worst == 3,
+        sent,
+    )
     told = refused(mud.InputError, lambda: sand.update(stress, state, strains[7]))
     check("a strain of NaN is told by its component", "strain increment 13 is not finite" in told, told)
 
@@ -254,6 +260,18 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
         listed = np.array(list_of_points, dtype=np.intc)
         told = refused(mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=listed))
         check(f"points {list_of_points} are refused", word in told, told)
+    wrong = np.array([0, 2, 0, 0], dtype=np.intc)
+    told = refused(mud.InputError, lambda: ground.update_batch(begun.stress, begun.statev, shear, material=wrong))
+    check("a material that the list does not have is refused", "the number 2; the list has 2" in told, told)
+    many = sand.update_batch(begun.stress, begun.statev, shear, threads=10**6)
+    one = sand.update_batch(begun.stress, begun.statev, shear, threads=1)
+    check("a million threads are as many as there can be", np.array_equal(many.stress, one.stress))
+    rows, fixed = np.tile(COMPRESSION, (5, 1)), begun.stress.copy()
+    fixed.flags.writeable = False
+    for given, result, word in ((rows[:4], rows[1:], "overlaps stress0"), (begun.stress, fixed, "read-only")):
+        out = mud.BatchResponse(stress=result, statev=begun.statev.copy())
+        told = refused(mud.InputError, lambda: sand.update_batch(given, begun.statev, shear, out=out))
+        check(f"a result is refused that is {word}", word in told, told)
     wetter = sand.update_batch(begun.stress, begun.statev, shear, 0.5 * suctions, tangent="consistent")
     kept = sand.update_batch(begun.stress, begun.statev, shear)
     check(
@@ -424,6 +442,8 @@ def test_is_the_programs_digit_by_digit():
         "a test that stops says where and keeps its rows",
         stopped and "stage 1" in str(stopped) and len(stopped.result["q"]) > 1,
     )
+    sent = pickle.loads(pickle.dumps(stopped))
+    check("it goes to other processes with them", len(sent.result["q"]) == len(stopped.result["q"]))
     told = refused(
     mud.TestStopped,
     lambda: mud.element_test(
@@ -714,4 +734,7 @@ def test_a_material_knows_the_range_of_its_tests():
     (work / "again.nml").write_text(sand.group())
     check("they are written and read again", mud.Material(work / "again.nml").tested == wanted)
     (work / "wrong.nml").write_text("&material\n   tested_e_min = 'loose'\n/\n")
+    (work / "slip.nml").write_text("&material\n   G_O = 120\n/\n")
+    told = refused(mud.UnknownName, lambda: mud.Material(work / "slip.nml"))
+    check("a slip is told with its file", "slip.nml: there is no parameter G_O" in told, told)
     check("no number: refused", "tested_e_min" in refused(mud.InputError, lambda: mud.Material(work / "wrong.nml")))

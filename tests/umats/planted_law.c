@@ -9,7 +9,7 @@
 enum {
    NONE, SIZE_OF_INCREMENTS, TANGENT, SHEAR_COLUMNS, TENSOR_SHEAR, NO_DROT, KEPT_PROPS, KEPT_STATE, SHARED_WORK,
    BEYOND_STATEV, CHANGES_WHAT_IT_REFUSES, SILENT_NAN, STOPS, ENERGY, FORGETS_ITS_LOADING, WRITES_DSTRAN,
-   SINGULAR_START, LOSES_A_STRAIN, ONE_STIFFNESS
+   SINGULAR_START, LOSES_A_STRAIN, ONE_STIFFNESS, NAN_TANGENT, SIGN_OF_SHEAR, OTHER_SIGN, NAN_PNEWDT
 };
 
 static double kept_props[5];
@@ -49,6 +49,8 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
       have_props = 1;
       memcpy(p, kept_props, sizeof p);
    }
+   if (fault == OTHER_SIGN) p[1] = -p[1], p[2] = -p[2];
+   if (fault == NAN_PNEWDT) *pnewdt = NAN;
    double shear = p[1], bulk = p[2], radius = p[3], hardening = p[4];
    double *back = fault == KEPT_STATE ? kept_back : statev;
    if (fault != NO_DROT && n == 6) turn(back, drot);
@@ -113,6 +115,11 @@ void umat_(double *stress, double *statev, double *ddsdde, double *sse, double *
             double unit = i == j ? (i < 3 ? 1 : 0.5) : 0;
             ddsdde[i + n*j] = (2 - mean/1000)*((i < 3 && j < 3 ? bulk - 2*shear/3 : 0) + 2*shear*unit);
          }
+   if (fault == SIGN_OF_SHEAR)
+      for (int j = 0; j < n; j++)
+         for (int i = 0; i < n; i++)
+            ddsdde[i + n*j] = (i < 3 && j < 3 ? bulk - 2*shear/3 : 0) + (i == j ? (i < 3 ? 2 : -1)*shear : 0);
+   if (fault == NAN_TANGENT && size > 0) ddsdde[0] = NAN;
    if (fault == TANGENT) ddsdde[1] *= 1.3;
    if (fault == SHEAR_COLUMNS)
       for (int j = 3; j < n; j++)

@@ -123,7 +123,7 @@ contains
 
       total = no_points()
       !$omp parallel do schedule(dynamic, CHUNK) default(shared) private(i, j, k, n, output, report, raised, done) &
-      !$omp num_threads(thread_count(given%threads)) reduction(join:total)
+      !$omp num_threads(thread_count(given%threads, given%n)) reduction(join:total)
       do first = 1, given%n, WIDTH
          n = min(WIDTH, given%n - first + 1)
          do i = 1, n
@@ -457,12 +457,14 @@ contains
       place = value
    end subroutine give_summary
 
-   !> The number asked for; 0 or less means what OpenMP would take. 1 in a process that may not use threads.
-   integer function thread_count(threads)
+   !> The number asked for, at most one a point and MOST_THREADS: a process ends where the system gives it no more. 0 or
+   !> less means what OpenMP would take. 1 in a process that may not use threads.
+   integer function thread_count(threads, points)
       !$ use omp_lib, only: omp_get_max_threads
-      integer(c_int), intent(in) :: threads
+      integer(c_int), intent(in) :: threads, points
+      integer, parameter :: MOST_THREADS = 1024
 
-      thread_count = max(threads, 1)
+      thread_count = max(min(threads, points, MOST_THREADS), 1)
       !$ if (threads <= 0) thread_count = omp_get_max_threads()
       if (thread_count > 1) then
          if (.not. may_use_threads()) thread_count = 1

@@ -162,7 +162,7 @@ typedef struct mud_points {
    int n;                   /* how many points a call reads and writes, 0 or more                      */
    int nstatev;             /* numbers of a point in statev0 and statev1                               */
    int tangent;             /* as in mud_update                                                        */
-   int threads;             /* 0: as many as OpenMP would take; 1 in a fork of a process that used more */
+   int threads;             /* 0: as many as OpenMP would take; at most 1024; 1 in a fork of a process that used more */
    const int *list;         /* numbers of the n points, from 0, each once; NULL: the first n           */
    const int *material;     /* [...]: number of the material of every point, from 0; NULL: 0           */
    const double *stress0, *statev0;      /* [6*...], [nstatev*...]: where the points are               */

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..host import HostRun
 from ..study.histories import between
+from ..study.runs import Failed
 from .device import G
 from .ground import Test, point_of
 
@@ -87,6 +88,8 @@ def answers_of(test: Test, folder: str | pathlib.Path) -> Answers:
         within = _within(time, start, start + test.interval)
         t, s, v = time[within] - start, moved[within] - moved[within][0], speed[within]
         peak, at = _peak(t, s)
+        if not peak > 0:
+            raise Failed(f"the plate does not go down in {name}: it needs more force, or a longer --interval to rest")
         load = _peak(t, force[within])[0] if device.buffer else device.largest
         late = np.abs(v[t > 0.9 * test.interval])
         drops.append(

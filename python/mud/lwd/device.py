@@ -15,7 +15,7 @@ from ..errors import InputError
 
 G = 9.81
 MOST = 1e4  # stress below a plate, of a wrong unit rather than of a device [kPa]
-SHORTEST, LIGHTEST, HIGHEST = 1e-3, 1e-4, 10.0  # likewise pulse [s], mass on the ground [Mg], height of fall [m]
+SHORTEST, LIGHTEST, HEAVIEST, HIGHEST = 1e-3, 1e-4, 1.0, 10.0  # likewise pulse [s], masses [Mg], height of fall [m]
 FLEXIBLE, RIGID = 2.0, math.pi / 2  # shape factors of a plate under uniform stress, and of a rigid one [-]
 
 
@@ -154,7 +154,8 @@ def device_of(name: str, record: str | os.PathLike | None = None, **values: floa
     for what, good in (
         (f"the plate presses with up to {stress:.3g} kPa", stress <= MOST),
         (f"the pulse lasts {1e3 * pulse:.3g} ms", pulse >= SHORTEST),
-        (f"{1e3 * device.mass:.3g} kg rest on the ground", device.mass >= LIGHTEST),
+        (f"{1e3 * device.mass:.3g} kg rest on the ground", LIGHTEST <= device.mass <= HEAVIEST),
+        (f"{1e3 * device.fall_mass:.3g} kg fall", device.fall_mass <= HEAVIEST),
         (f"the mass falls from {device.fall:g} m", device.fall <= HIGHEST),
     ):
         if not good:

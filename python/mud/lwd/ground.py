@@ -14,6 +14,8 @@ from .device import G, Device, force_of
 SEATING, MEASURED = 3, 3  # drops of the standards
 DEPTHS = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)  # of points on the axis, over the plate's radius
 CELL, GROWTH = 0.3, 0.45  # cell at the plate over its radius; growth of cells over the distance from it [-]
+PENALTY, STIFFER = 1e8, 100.0  # of the contact by default [kN/m3]; over Young's modulus and radius on hard ground [-]
+MOST_PERMEABLE, HEAVIEST_GRAINS = 1e-6, 10.0  # beyond which a number has another unit [m2], [Mg/m3]
 FRAMES = 1e-3  # fields of the last drop are written so often [s]
 BEFORE = 5e-4  # a mass that falls is this near to its buffer when the drop begins [s]
 
@@ -32,10 +34,11 @@ class Layer:
         if not self.material.startswith("elastic:"):
             return None
         try:
-            young, poisson = (*(float(x) for x in self.material.split(":")[1:]), 0.3)[:2]
+            young, *given = (float(x) for x in self.material.split(":")[1:])
+            (poisson,) = given or (0.3,)
         except ValueError:
             young, poisson = -1.0, 0.0
-        if not (young > 0 and 0 <= poisson < 0.5):
+        if not (0 < young < math.inf and 0 <= poisson < 0.5):
             raise InputError(f"{self.material}: an elastic layer is elastic:YOUNG or elastic:YOUNG:POISSON, in kPa")
         return young, poisson
 
@@ -66,6 +69,8 @@ class Test:
 
     def __post_init__(self):
         device, wet = self.device, self.wet
+        if not wet and (self.suction, self.water_table) != (None, None):
+            raise InputError("elastic ground is dry: it takes no suction and no water table")
         if wet and (self.suction is None) == (self.water_table is None):
             raise InputError("give the suction [kPa] or the depth of the water table [m]: one of the two")
         for what, value, least, words in (
@@ -77,14 +82,15 @@ class Test:
         ):
             if value is not None and not least <= value < math.inf:
                 raise InputError(f"the {what} is {value:g}; it is {least} or more {words}".rstrip())
-        for what, value in (
-            ("permeability", self.permeability),
-            ("density of the grains", self.rho_s),
-            *(("void ratio", layer.void_ratio) for layer in self.layers),
-            *(("thickness of a layer", layer.thickness) for layer in self.layers[:-1]),
+        for what, value, most, unit in (
+            ("permeability", self.permeability, MOST_PERMEABLE, " m2, of 10 m/s of water"),
+            ("density of the grains", self.rho_s, HEAVIEST_GRAINS, " Mg/m3"),
+            *(("void ratio", layer.void_ratio, math.inf, "") for layer in self.layers),
+            *(("thickness of a layer", layer.thickness, math.inf, "") for layer in self.layers[:-1]),
         ):
-            if not 0 < value < math.inf:
-                raise InputError(f"the {what} is {value:g}; it is above 0")
+            if not 0 < value < most:
+                below = f" and below {most:g}{unit}" if unit else ""
+                raise InputError(f"the {what} is {value:g}; it is above 0{below}")
         # A recorded or given pulse; of a mass that falls that on a rigid base, the shortest.
         pulse = device.on_rigid_base()[1] if device.buffer else device.pulse
         if not 1.5 * pulse < self.interval < math.inf:
@@ -222,10 +228,13 @@ def plate_of(test: Test, stands: list[str]) -> list[str]:
             f"&plate name = 'plate' group = 'top_1' mass = {device.mass:g}{thrown} /",
             f"&load group = 'top_1' kind = 'pressure' value = {weight:.9g} stages = {quoted(stands)} /",
         ]
+    # The contact gives way by a hundredth of what hard ground does.
+    hard = STIFFER * test.layers[0].elastic[0] / a if test.layers[0].elastic else 0.0
+    stiffer = f" penalty = {hard:g}" if hard > PENALTY else ""
     return [
         *lines,
         f"&plate name = 'plate' r = 0, {a:g} z = 0 mass = {device.mass:g} weight = 'yes'{thrown} /",
-        f"&contact name = 'face' slave = 'top_1' master = 'plate' stages = {quoted(stands)} /",
+        f"&contact name = 'face' slave = 'top_1' master = 'plate'{stiffer} stages = {quoted(stands)} /",
         f"&fix group = 'plate' field = 'u_z' hold = 'yes' stages = 'rest' /",
     ]
 
