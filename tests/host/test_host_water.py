@@ -184,3 +184,19 @@ def test_tied_nodes_have_one_balance_of_water():
         for what, one, other in zip(("flows", "volumes"), *found):
             misses = max(abs(a - b) for a, b in zip(one, other))
             check(f"{name}: {what}", misses < 1e-5 * max(map(abs, one)), (one, other))
+
+
+def test_tied_pressures_that_begin_apart_are_one():
+    # Two halves begin with their own water: tied nodes have the same pressures from the start, and keep them.
+    text = RAINY[:RAINY.index("&load")].replace("gravity = 10 ", "").replace("r = 0, 1 r_cells = 2",
+                                                                           "r = 0, 0.5, 1 r_cells = 1, 1")
+    first = next(line for line in text.splitlines() if line.startswith("&initial"))
+    halves = [f"&initial group = 'block_{i}_1' p_w = {-5 * i} p_c = {5 * i} /" for i in (1, 2)]
+    text = text.replace(first, "\n".join(halves)).replace("&fix group = 'left' field = 'u_r' /\n", "")
+    text = text.replace("&fix group = 'right' field", "&fix group = 'all' field")
+    text += "&tie first = 'left' second = 'right' pressures = 'yes' /\n"
+    text += "&point name = 'left' r = 0 z = 0 /\n&point name = 'right' r = 1 z = 0 /\n"
+    folder, _ = run("apart", text, "--set", "stage.duration=1e3", "--set", "stage.dt=1e2")
+    for row in tables.numbers(folder / "histories.csv"):
+        for field in ("p_w", "p_c"):
+            check(f"{field} at {row['time']} s", row[f"left.{field}"] == row[f"right.{field}"], row)
