@@ -103,6 +103,12 @@ contains
                state%v(AT_U_Z, nodes) = one%v_z + one%wave*sin(one%wave_number*(mesh%x(2, nodes) - one%datum))
             end associate
          end do
+         ! Tied nodes move as one from the start, as the first of them.
+         do i = 1, size(mesh%x, 2)
+            associate (at => model%dofs%of(AT_U_Z, i))
+               if (at > 0) state%v(AT_U_Z, i) = state%v(AT_U_Z, model%dofs%node(at))
+            end associate
+         end do
          associate (flows => present .and. model%domain%regions(model%domain%region_of)%drainage == COUPLED)
             state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model, flows)
             call share_pressures(model, nodes_of(mesh, flows), state%x)
