@@ -197,7 +197,7 @@ contains
 
          m = size(assembly%r, 1)
          n = element_size(domain, e)
-         if (domain%with_c) call balance_of_water(domain, assembly%air, e, n, with_tangent, out)
+         if (domain%with_c) call balance_of_water(domain, dofs, assembly%air, e, n, with_tangent, out)
          assembly%r(:, e) = out%r(:m)
          assembly%stretch(:, e) = out%stretch(:m)
          if (assembly%with_change) assembly%d_r(:, e) = out%change(:m)
@@ -221,8 +221,9 @@ contains
 
    !> Replaces the sum of the balances by its difference from that of the air, the balance of water, where the air
    !> pressure is prescribed and the flow of air unknown.
-   pure subroutine balance_of_water(domain, air, e, m, with_tangent, out)
+   pure subroutine balance_of_water(domain, dofs, air, e, m, with_tangent, out)
       type(domain_t), intent(in) :: domain
+      type(dofs_t), intent(in) :: dofs
       logical, intent(in) :: air(:)
       integer, intent(in) :: e, m
       logical, intent(in) :: with_tangent
@@ -231,8 +232,8 @@ contains
 
       if (domain%regions(domain%region_of(e))%drainage /= COUPLED) return
       do i = 1, domain%n_p
-         if (.not. air(domain%mesh%t6(i, e))) cycle
          w = LAST_U + i
+         if (.not. air(dofs%node(dofs%element(w, e)))) cycle
          c = w + domain%n_p
          out%r(w) = out%r(w) - out%r(c)
          if (with_tangent) out%k(w, :m) = out%k(w, :m) - out%k(c, :m)

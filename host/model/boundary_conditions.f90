@@ -195,7 +195,7 @@ contains
                if (is_released(problem%constraint, i, node)) cycle
                at = problem%model%dofs%of(min(fix%field, AT_P_C), node)
                if (at == 0) cycle
-               if (fix%field == PRESCRIBED_P_A) air_by(node) = i
+               if (fix%field == PRESCRIBED_P_A) air_by(problem%model%dofs%node(at)) = i
                if (fix%field /= PRESCRIBED_P_A) by(at) = i
             end do
          end associate

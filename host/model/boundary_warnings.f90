@@ -193,8 +193,8 @@ contains
                if (.not. any(one%in_stage .and. start < one%until .and. one%from < start + model%stages%duration)) &
                   call print_warning(place_of(one)//'this &fix has no effect: its stages begin at '// &
                      short(minval(start, mask=one%in_stage))//' s and end at '// &
-                     short(maxval(start + model%stages%duration, mask=one%in_stage))//' s, and from and until are '// &
-                     'times of the run.')
+                     short(maxval(start + model%stages%duration, mask=one%in_stage))//' s, none of them between '// &
+                     'from and until, which are times of the run.')
             end associate
             if (one%field <= DISPLACEMENTS) cycle
             call look_at_stages(one, PRESCRIBED_WORDS(one%field))
@@ -209,7 +209,8 @@ contains
             if (one%kind == LOAD_FORCE_R .and. all(vertical(nodes))) then
                call print_warning(place_of(one)//'the force has no effect: the plate '''//trim(one%group_name)// &
                                   ''' moves vertically alone; see motion of &plate.')
-            else if (one%kind /= LOAD_FORCE_Z .and. all(on_axis(nodes))) then
+            else if (one%kind /= LOAD_FORCE_Z .and. .not. one%falls .and. all(on_axis(nodes))) then
+               ! Rain, beside this, limits the pressures there.
                call print_warning(place_of(one)//'the load has no effect: all nodes of '''//trim(one%group_name)// &
                                   ''' lie at r = 0, where nothing moves along r and a boundary has no area.')
             end if
@@ -219,7 +220,8 @@ contains
                associate (edges => facing_edges(model, one%group, one%in_stage), r => model%domain%mesh%x(1, :))
                   ! The ground is on the left: what looks upwards runs against r.
                   if (.not. any(r(edges(2, :)) < r(edges(1, :)))) call print_warning(place_of(one)// &
-                     'no rain falls on '''//trim(one%group_name)//''': none of its edges faces upwards.')
+                     'no rain falls on '''//trim(one%group_name)//''': none of its edges faces upwards, and it is '// &
+                     'a seepage face there.')
                end associate
             end if
             associate (edges => edges_with_flow(model%domain, one%group))

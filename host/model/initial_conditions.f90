@@ -13,6 +13,7 @@ module initial_conditions
    use faults, only: fault_t, raise
    use start_findings, only: tension_t, use_t
    use texts, only: short, whole
+   use triangle_mesh, only: nodes_of
    use unknown_fields, only: AT_U_Z, AT_P_W, AT_P_C
    use vertical_lines, only: strips_t, new_strips, pieces_above
    implicit none (type, external)
@@ -102,13 +103,41 @@ contains
                state%v(AT_U_Z, nodes) = one%v_z + one%wave*sin(one%wave_number*(mesh%x(2, nodes) - one%datum))
             end associate
          end do
-         state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model, present .and. &
-            model%domain%regions(model%domain%region_of)%drainage == COUPLED)
+         ! Tied nodes move as one from the start, as the first of them.
+         do i = 1, size(mesh%x, 2)
+            associate (at => model%dofs%of(AT_U_Z, i))
+               if (at > 0) state%v(AT_U_Z, i) = state%v(AT_U_Z, model%dofs%node(at))
+            end associate
+         end do
+         associate (flows => present .and. model%domain%regions(model%domain%region_of)%drainage == COUPLED)
+            state%x(AT_P_W:AT_P_C, :) = pressures_at_start(model, flows)
+            call share_pressures(model, nodes_of(mesh, flows), state%x)
+         end associate
          call set_given_nodes(model, present, state%x)
          ! Pressures live on the vertices alone where they are linear.
          if (model%domain%n_p == 3) state%x(AT_P_W:AT_P_C, [mesh%t6(4:6, :)]) = 0.0_wp
       end associate
    end subroutine set_nodes
+
+   !> Tied nodes whose pressures are one begin alike, as the first of them whose fluids flow.
+   pure subroutine share_pressures(model, flows, x)
+      type(model_t), intent(in) :: model
+      logical, intent(in) :: flows(:)      !< (nodes)
+      real(wp), intent(inout) :: x(:, :)   !< (FIELDS, nodes)
+      integer :: first(model%dofs%n), i, f
+
+      first = model%dofs%node
+      do i = size(flows), 1, -1
+         do f = AT_P_W, AT_P_C
+            if (flows(i) .and. model%dofs%of(f, i) > 0) first(model%dofs%of(f, i)) = i
+         end do
+      end do
+      do i = 1, size(flows)
+         do f = AT_P_W, AT_P_C
+            if (model%dofs%of(f, i) > 0) x(f, i) = x(f, first(model%dofs%of(f, i)))
+         end do
+      end do
+   end subroutine share_pressures
 
    pure subroutine note_use(law, e, p, use_of_law)
       class(material_t), intent(in) :: law

@@ -136,6 +136,7 @@ contains
             if (.not. run%scheme%has_rates .or. .not. run%domain%with_w) return
             do i = 1, size(air_by)
                if (dofs%of(AT_P_W, i) == 0) cycle
+               if (dofs%node(dofs%of(AT_P_W, i)) /= i) cycle
                w = reaction(dofs%of(AT_P_W, i))
                a = 0.0_wp
                k = by(dofs%of(AT_P_W, i))

@@ -143,6 +143,7 @@ contains
          do node = 1, size(constraint%air)
             w = run%dofs%of(AT_P_W, node)
             if (w == 0) cycle
+            if (run%dofs%node(w) /= node) cycle
             c = run%dofs%of(AT_P_C, node)
             inflow = inflow_at(w)
             outflow = 0.0_wp

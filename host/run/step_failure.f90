@@ -61,6 +61,11 @@ contains
                           'there, load in smaller steps, or look for a missing &fix.')
                return
             end if
+            if (.not. dt > 0.0_wp .and. m%rule == 3) then
+               call raise(fault, EXIT_FREE_BODY, place//'the masses of elements with quadrature = 3 in &scene give '// &
+                          'no accelerations at the start; take 6 points, or start = ''zero'' in &stage.')
+               return
+            end if
             alone = run%model%on_contact(run%at%stage)%words
             if (alone /= '') alone = alone//', and surfaces that only touch hold nothing: let them overlap by a '// &
                'millionth of an edge, give a &plate weight = ''yes'' beside gravity, or begin with a dynamic stage'

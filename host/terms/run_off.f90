@@ -173,10 +173,12 @@ contains
          if (c%fixed(w) .or. (c%limited_by(w) > 0 .and. c%target(w) <= value)) return
          c%target(w) = value
          c%limited_by(w) = group
-         if (p_c == 0 .or. c%air(node)) return
-         if (c%fixed(p_c)) return
-         c%air(node) = .true.
-         c%air_target(node) = 0.0_wp
+         if (p_c == 0) return
+         associate (first => problem%dofs%node(p_c))
+            if (c%fixed(p_c) .or. c%air(first)) return
+            c%air(first) = .true.
+            c%air_target(first) = 0.0_wp
+         end associate
       end associate
    end subroutine limit_node
 

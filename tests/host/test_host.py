@@ -68,6 +68,8 @@ MISTAKES = [
     ("long name", SCENE, "'load'", f"'{'l'*65}'", 2, ("a name has 1 to 64",)),
     ("huge mesh", SCENE, "r_cells = 8\n   z = 0, 0.25\n   z_cells = 2",
      "r_cells = 100000\n   z = 0, 0.25\n   z_cells = 100000", 10, ("r_cells, z_cells: 2e10 elements", "at most 5e6")),
+    ("masses of three points", SCENE.replace("'static'", "'dynamic'"), "&scene", "&scene quadrature = 3", 13,
+     ("quadrature = 3", "start = 'zero' in &stage")),
     ("absurd strain", SCENE, "value = 100", "value = 1.0e8", 14, ("strained by more than 1",)),
 ]
 # Histories from a file: what a line holds, what is said, and where.

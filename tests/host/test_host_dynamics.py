@@ -331,6 +331,14 @@ def test_pressures_of_tied_sides():
               and h["top.p_w"][-1] > 0, (h["top.p_w"][-1], h["corner.p_w"][-1]))
 
 
+def test_tied_sides_begin_with_one_velocity():
+    # What one side alone is given: without that they would move apart by it for ever.
+    h, _ = run(column() + "&initial group = 'left' v_z = 1 /\n&fix group = 'bottom' field = 'u_z' /\n"
+               "&fix group = 'all' field = 'u_r' /\n&tie first = 'left' second = 'right' /\n"
+               + stage("fly", 1e-3, 1e-4, more="created_energy = 1"), "fly")
+    check("they move as one", (h["top.u_z"] == h["corner.u_z"]).all() and h["top.u_z"][-1] > 0, h["top.u_z"][-1])
+
+
 def test_given_steps_end_at_the_breaks_that_they_would_jump_over():
     # Two pulses of 9 and 5 ms under steps of 20 ms, statically: the peaks press the column of 4 m together by
     # 5 kPa/2.4e4 kPa (M of E = 2e4, nu = 0.25) times 4 m, and what follows goes on in steps as given.

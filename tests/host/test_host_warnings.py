@@ -128,7 +128,10 @@ DOUBTS = [
      ["this &fix has no effect", "end at 1 s"]),
     ("support of a stage by times of the stage", "&load", "&stage name = 'rest' analysis = 'static' duration = 1 "
      "dt = 1 /\n&fix group = 'top' field = 'u_r' stages = 'rest' until = 0.5 /\n&load",
-     ["this &fix has no effect: its stages begin at 1 s and end at 2 s, and from and until are times of the run"]),
+     ["this &fix has no effect: its stages begin at 1 s and end at 2 s, none of them between from and until, "
+      "which are times of the run"]),
+    ("rain on the axis", "&load", "&load group = 'left' kind = 'rain' value = 1e-8 /\n&load",
+     ["no rain falls on 'left': none of its edges faces upwards, and it is a seepage face"]),
     ("pressure on the axis", "'top' kind = 'pressure'", "'left' kind = 'pressure'",
      ["scene.nml:17: the load has no effect: all nodes of 'left' lie at r = 0"]),
     ("force away from the axis", "'top' kind = 'pressure'", "'left' kind = 'force_r'",

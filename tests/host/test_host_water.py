@@ -160,3 +160,43 @@ def test_a_sudden_change_draws_no_water_through_the_surface():
                 last = tables.numbers(folder / "ledger.csv")[-1]
                 share = (last["outflow_air"] - last["outflow"]) / 1e-6
                 check(f"{tolerance}: the rain is what has come in", abs(share - 1) < 1e-3, share)
+
+
+def test_tied_nodes_have_one_balance_of_water():
+    # Sides that are tied have the answers of sides that are held: nodes that share their pressures are counted once,
+    # and share the air pressure that one of them is given.
+    held = "&fix group = 'left' field = 'u_r' /\n&fix group = 'right' field = 'u_r' /\n"
+    tied = "&tie first = 'left' second = 'right' pressures = 'yes' /\n&fix group = 'bottom' field = 'u_r' /\n"
+    rain = "&load group = 'top' kind = 'rain' value = 1e-6 ponding = 0.01 /\n"
+    for name, load in (("rain", rain), ("air", "&fix group = 'top' field = 'p_a' value = 3 /\n"),
+                       ("rain_and_air", rain.replace("top", "top_1") + "&fix group = 'top_2' field = 'p_a' /\n"),
+                       ("suction", "&fix group = 'top' field = 'p_c' value = 8 /\n")):
+        found = []
+        for sides in (held, tied):
+            text = RAINY.replace(held, sides).replace(rain, load)
+            text = text.replace("r = 0, 1 r_cells = 2", "r = 0, 0.5, 1 r_cells = 1, 1")
+            folder, said = run(f"{name}_{sides == tied}", text, "--set", "stage.duration=1e3", "--set", "stage.dt=1e2")
+            check(f"{name}: no water is made", "of water are" not in said, said)
+            flows = tables.numbers(folder / "reactions_s.csv")[-1].items()
+            volumes = tables.numbers(folder / "ledger.csv")[-1]
+            found.append([[sum(v for k, v in flows if k.endswith(what)) for what in ("outflow_w", "outflow_a")],
+                          [volumes[what] for what in ("outflow", "outflow_air")]])
+        for what, one, other in zip(("flows", "volumes"), *found):
+            misses = max(abs(a - b) for a, b in zip(one, other))
+            check(f"{name}: {what}", misses < 1e-5 * max(map(abs, one)), (one, other))
+
+
+def test_tied_pressures_that_begin_apart_are_one():
+    # Two halves begin with their own water: tied nodes have the same pressures from the start, and keep them.
+    text = RAINY[:RAINY.index("&load")].replace("gravity = 10 ", "").replace("r = 0, 1 r_cells = 2",
+                                                                           "r = 0, 0.5, 1 r_cells = 1, 1")
+    first = next(line for line in text.splitlines() if line.startswith("&initial"))
+    halves = [f"&initial group = 'block_{i}_1' p_w = {-5 * i} p_c = {5 * i} /" for i in (1, 2)]
+    text = text.replace(first, "\n".join(halves)).replace("&fix group = 'left' field = 'u_r' /\n", "")
+    text = text.replace("&fix group = 'right' field", "&fix group = 'all' field")
+    text += "&tie first = 'left' second = 'right' pressures = 'yes' /\n"
+    text += "&point name = 'left' r = 0 z = 0 /\n&point name = 'right' r = 1 z = 0 /\n"
+    folder, _ = run("apart", text, "--set", "stage.duration=1e3", "--set", "stage.dt=1e2")
+    for row in tables.numbers(folder / "histories.csv"):
+        for field in ("p_w", "p_c"):
+            check(f"{field} at {row['time']} s", row[f"left.{field}"] == row[f"right.{field}"], row)
