@@ -230,7 +230,7 @@ MUTATIONS = [
     ("a straight strain without the centre's part in its derivative",
      (LOADING_CHANGES, "loading%of_centre = decay*inc%length/inc%rho", "loading%of_centre = 0.0_wp*decay")),
     ("a switch of the isotropic mechanism that does not move",
-     (EVENT_MECHANISM, "event_t(ORDINARY, RATE_THERE, BEFORE, .true.", "event_t(ORDINARY, RATE_THERE, BEFORE, .false.")),
+     (EVENT_MECHANISM, "event_t(ORDINARY, RATE_THERE, BEFORE, BY_MECHANISM)", "event_t(ORDINARY, RATE_THERE, BEFORE, 0)")),
     ("noise at what the isotropic mechanism remembers is a reversal",
      (MECHANISM_ACTS, "turns = inc%rests\n", "turns = .false.\n")),
     ("shear that turns just below the isotropic memory is noise",

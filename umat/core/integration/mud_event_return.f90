@@ -2,7 +2,7 @@
 !> Event: r reaches the target of an interrupted process, which goes on; docs/theory/memory-rules.md section 3.4.
 module mud_event_return
    use mud_critical_state, only: bounding_ratio, bounding_slope
-   use mud_event, only: event_t, event_changes_t, NO_RATE, AT, BY_SURFACE, ORDINARY, EXACT, EXACT_TRIALS, psi_at
+   use mud_event, only: event_t, event_changes_t, NO_RATE, AT, BY_SURFACE, ORDINARY, psi_at
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
@@ -15,7 +15,7 @@ module mud_event_return
    private
    public :: RETURNS, return_function, slopes_of_return
 
-   type(event_t), parameter :: RETURNS = event_t(ORDINARY, NO_RATE, AT, .true., BY_SURFACE, EXACT, EXACT_TRIALS)
+   type(event_t), parameter :: RETURNS = event_t(ORDINARY, NO_RATE, AT, BY_SURFACE)
 contains
    !> Distance of r before the target, at a pseudo-time and a vector there [-].
    pure real(wp) function return_function(par, inc, trial, time, y) result(f)

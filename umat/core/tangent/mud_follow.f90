@@ -6,6 +6,7 @@ module mud_follow
       changes_of_ratio, jump_of_memory
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing
+   use mud_event, only: NOTHING
    use mud_event_table, only: EVENTS
    use mud_event_time, only: move_event
    use mud_increment, only: increment_t
@@ -81,7 +82,7 @@ contains
             if (trial%e <= trial%parts) call changes_of_parting(it%inc, trial, sens)   ! it began without a gap
          end if
          call propagate(par, it%inc, trial, h, it%reached >= it%inc%to, sens)
-         if (EVENTS(it%event)%moves .and. it%reached < it%inc%to) &
+         if (EVENTS(it%event)%depends /= NOTHING .and. it%reached < it%inc%to) &
             call move_event(par, it%inc, it%event, trial, h, sens)
          if (trial%mode /= MODE_HELD) call keep_past_changes(par, trial%y0, trial%y, trial%past, sens%y, sens%past)
          if (trial%drifts) sens%r_in = tensors_t(changes_of_ratio(par, it%state%sigma, sens%y), ANY_TENSORS)
