@@ -256,7 +256,7 @@ MUTATIONS = [
      (FADING, "along(:, 1) = along(:, 1) - weight*d_left(:, i)", "along(:, 1) = along(:, 1) - 0.0_wp*weight*d_left(:, i)")),
     ("no bounding surface inside the elastic domain", (EVENT_BOUNDS, "LARGEST_EXCESS = 0.2_wp", "LARGEST_EXCESS = 1.0e9_wp")),
     ("the tangent does not know where the elastic domain ends",
-     (DRIVING, "driving%exit = changes_of_exit", "driving%exit = 0.0_wp*changes_of_exit")),
+     (DRIVING, "driving%exit = -(inc%exit", "driving%exit = 0.0_wp*(inc%exit")),
     # kinks of suction, and the step control
     ("suction passes zero inside a substep", (PHASES, "cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc, ", "cut_t(CUT_NO_SUCTION, 0.0_wp*inc%p_c0, ")),
     ("the third order is never taken", (ORDER, "if (share*h*(1.0_wp + LAST_SLIVER) >= rest) then", "if (share*h >= -rest) then")),

@@ -124,8 +124,8 @@ module mud_retention
 
    !> Way of S_w through an increment.
    type :: course_t
-      logical :: acts         !< False without hysteresis: the rest has no meaning then.
       real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
+      logical :: acts         !< False without hysteresis: the rest has no meaning then.
       real(wp) :: log_turn, log_end   !< ln(x/P_a) there and at the end [-].
       type(retention_t) :: material   !< Without a branch.
       type(path_t) :: path    !< Where x began to go the way that it goes: at the start, or at the turn.
@@ -913,6 +913,7 @@ contains
       logical :: lost
 
       course%acts = self%hysteresis
+      course%turn = 1.0_wp
       if (.not. course%acts) return
       course%material = self
       if (.not. course%material%least%known) course%material%least = find_least(course%material)
@@ -969,13 +970,12 @@ contains
       end do
    end function turn_of_suction
 
-   !> Pseudo-times at which S_w has a kink, n of them, and where x turns, 1 if it does not: x passes a turning point, or
-   !> the branch meets a main curve or the branch that it left. All of them depend on x alone, so they are known
-   !> beforehand, behind a turn too. docs/theory/material.md section 2.1.1.
-   pure subroutine list_kinks(way, course, turn, times, n)
+   !> Pseudo-times at which S_w has a kink, n of them: x passes a turning point, or the branch meets a main curve or the
+   !> branch that it left. All of them depend on x alone, so they are known beforehand, behind a turn too.
+   !> docs/theory/material.md section 2.1.1.
+   pure subroutine list_kinks(way, course, times, n)
       type(way_t), intent(in) :: way
       type(course_t), intent(in) :: course
-      real(wp), intent(out) :: turn
       real(wp), intent(out) :: times(MAX_KINKS)   !< Times of the kinks; entries beyond n have no meaning [-].
       integer, intent(out) :: n
       type(retention_t) :: branch
@@ -983,9 +983,7 @@ contains
       type(saturation_t) :: sat
 
       n = 0
-      turn = 1.0_wp
       if (.not. course%acts) return
-      turn = course%turn
       times = 0.0_wp
       path = course%path
       call list_on_way(way, course%material, path, 0.0_wp, course%turn, course%log_turn, times, n)

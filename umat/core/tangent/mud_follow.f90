@@ -5,7 +5,7 @@ module mud_follow
    use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_of_parting, &
       changes_of_ratio, jump_of_memory
    use mud_cutoff, only: MODE_HELD
-   use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing
+   use mud_driving, only: change_of_turn, change_of_passing
    use mud_event, only: NOTHING
    use mud_event_table, only: EVENTS
    use mud_event_time, only: move_event
@@ -56,7 +56,7 @@ contains
       case (CUT_KINK)
          change = change_of_passing(inc, cut%time, par%suction%omega, sens%driving)
       case (CUT_NO_SUCTION)
-         change = change_of_zero_suction(inc, cut%time, sens%driving)
+         change = -(cut%time/inc%d_pc)*sens%driving%d_pc
       case (CUT_EXIT)
          change = sens%driving%exit
       case default
