@@ -12,9 +12,8 @@ module mud_one_point
    use mud_refusals, only: place_t, place_at, begin_at, remark_on_begun, remark_on_end, remark_on_void_ratio, &
       save_if_asked
    use mud_registry, only: NSTATV, S_SATURATION, S_SUCTION
-   use mud_state, only: statev_size
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
-      ON_STATEV
+   use mud_state, only: statev_size, check_size
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_to_host, only: put
    use mud_trace, only: trace_t
    implicit none (type, external)
@@ -225,7 +224,6 @@ contains
       type(start_t), intent(out) :: start
       type(mud_status_t), intent(out) :: status
       real(c_double), pointer, contiguous :: strain(:)
-      integer :: n
 
       call find_prepared(storage, start%material, status)
       if (.not. (c_associated(stress0) .and. c_associated(statev0) .and. &
@@ -233,11 +231,10 @@ contains
       if (status%code == MUD_OK .and. kind_of(tangent) < 0) &
          status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp))
       if (status%code /= MUD_OK) return
-      n = statev_size(start%material%par%options_t)
-      if (n_statev < n) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_statev, wp), real(n, wp), huge(1.0_wp))
+      call check_size(n_statev, start%material%par%options_t, status)
       if (status%code /= MUD_OK) return
       call c_f_pointer(stress0, start%stress, [6])
-      call c_f_pointer(statev0, start%statev, [n])
+      call c_f_pointer(statev0, start%statev, [statev_size(start%material%par%options_t)])
       if (.not. c_associated(dstrain)) return
       call c_f_pointer(dstrain, strain, [6])
       start%d_strain = strain
