@@ -100,6 +100,7 @@ contains
       type(arrays_t) :: arrays
       type(mud_status_t) :: status
       type(summary_t) :: total
+      type(summary_t), pointer :: place
       type(output_t) :: output(WIDTH)
       type(report_t) :: report(WIDTH)
       integer :: first, i, j(WIDTH), k(WIDTH), n
@@ -157,7 +158,9 @@ contains
       end do
       !$omp end parallel do
       run = total%failed
-      if (c_associated(summary)) call give_summary(summary, total)
+      if (.not. c_associated(summary)) return
+      call c_f_pointer(summary, place)
+      place = total
    end function run
 
    !> Status of the counts and the kind of tangent of a call, and of an array that the task needs and that is missing.
@@ -447,15 +450,6 @@ contains
       total%rates = total%rates + one%rates
       total%substeps = total%substeps + one%substeps
    end subroutine add
-
-   subroutine give_summary(summary, value)
-      type(c_ptr), intent(in) :: summary
-      type(summary_t), intent(in) :: value
-      type(summary_t), pointer :: place
-
-      call c_f_pointer(summary, place)
-      place = value
-   end subroutine give_summary
 
    !> The number asked for; 0 or less means what OpenMP would take. 1 in a process that may not use threads.
    integer function thread_count(threads)

@@ -6,8 +6,9 @@ module mud_options
       recovered_changes, recovery_changes
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_preloading, only: preloading_t, preloading_of, preload, log_contraction, note_contraction, &
-      contraction_error, jump_of_contraction, changes_of_contraction, NO_CONTRACTION, Y_LOG_CHI, Y_CONTRACTION
+   use mud_preloading, only: bend_t => preloading_t, preloading_of, bend => preload, log_contraction, &
+      note_contraction, contraction_error, jump_of_contraction, changes_of_contraction, NO_CONTRACTION, Y_LOG_CHI, &
+      Y_CONTRACTION
    use mud_state, only: state_t, memory_t
    use mud_tensor, only: DIRECTIONS
    use mud_vector, only: NY, Y_OPTIONS, Y_SHEAR
@@ -15,6 +16,7 @@ module mud_options
    private
    public :: of_options_t, has_numbers, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, &
              look_at_numbers, rates_of_numbers, add_volume_rates, move_numbers
+   !> A bend of D and 1/h with (r - r_in):n, the same in every direction, is that of the one option that bends.
    public :: bend_t, bend_of, bend, bend_of_hardening, changes_of_bend
    public :: past_counts, take_past, forget_past, new_past, begin_past, interrupt_past, resume_past
    public :: past_changes_t, no_past_changes, begin_past_changes, keep_past_changes, jump_of_past
@@ -26,11 +28,6 @@ module mud_options
       logical :: bends   !< D and 1/h are bent with (r - r_in):n: other processes have left contraction.
       real(wp) :: chi    !< Contraction of other processes, if so [-].
    end type of_options_t
-
-   !> Bend of D and 1/h with (r - r_in):n, the same in every direction.
-   type :: bend_t
-      type(preloading_t) :: preloading
-   end type bend_t
 
    !> Derivatives of the numbers of the memory beside the vector.
    type :: past_changes_t
@@ -207,18 +204,8 @@ contains
       real(wp), intent(in) :: ratio, a_0, b_0
       type(bend_t) :: with_x
 
-      with_x%preloading = preloading_of(par%preload, own%chi, ratio, a_0, b_0)
+      with_x = preloading_of(par%preload, own%chi, ratio, a_0, b_0)
    end function bend_of
-
-   !> Bends D and 1/h at (r - r_in):n = x; the factor on D where it contracts, and its slope d ln/d ln q, q as x**2 [-].
-   pure subroutine bend(with_x, x, d, h_b, factor, slope)
-      type(bend_t), intent(in) :: with_x
-      real(wp), intent(in) :: x
-      real(wp), intent(inout) :: d, h_b
-      real(wp), intent(out) :: factor, slope
-
-      call preload(with_x%preloading, x, d, h_b, factor, slope)
-   end subroutine bend
 
    !> d ln(1/h)/d ln q of that slope [-].
    pure real(wp) function bend_of_hardening(par, slope)
