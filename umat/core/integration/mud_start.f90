@@ -10,7 +10,7 @@ module mud_start
    use mud_options, only: new_numbers
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
-   use mud_retention, only: saturation_t, saturation, begin_saturation, note_saturation
+   use mud_retention, only: saturation_t, saturation, begin_saturation
    use mud_reversal, only: new_memory
    use mud_state, only: state_t, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_VOID_RATIO, ON_VOID_RATIO
@@ -33,14 +33,13 @@ contains
       type(suction_law_t) :: law
       type(saturation_t) :: sat
       real(wp) :: p, r(6)
+      logical :: credible
 
       call check_stress(par, sigma, p_c, status)
       if (status%code /= MUD_OK) return
-      if (.not. is_finite(e)) then
-         status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
-         return
-      end if
-      if (e <= E_LOWER .or. e >= E_UPPER) then
+      credible = is_finite(e)
+      if (credible) credible = e > E_LOWER .and. e < E_UPPER
+      if (.not. credible) then
          status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
          return
       end if
@@ -94,7 +93,7 @@ contains
       real(wp), intent(in) :: psi
       type(state_t), intent(inout) :: state
 
-      call note_saturation(law%retention_t, sat, state%s_w)
+      if (.not. law%hysteresis) state%s_w = sat%s_w   ! with it S_w is the state's own
       state%psi = psi
    end subroutine keep_end
 

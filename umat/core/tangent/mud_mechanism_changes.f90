@@ -99,9 +99,9 @@ contains
       short = -changes_of_measure(par, inc, time, state%sigma, y(:, 1:3), de, dp_c, driving%scans, driving%turn)
    end subroutine changes_at_memory
 
-   !> Changes of the measure at a pseudo-time and a stress [kPa] where stress, void ratio and suction change by y(:, 1:3)
-   !> [kPa], de [-] and dp_c [kPa], and a branch of S_w by its turn. With those of a margin less its measure they are
-   !> those of the margin.
+   !> Changes of the measure at a pseudo-time and a stress [kPa] where stress, void ratio and suction change by
+   !> y(:, 1:3) [kPa], de [-] and dp_c [kPa], and a branch of S_w by its turn. With those of a margin less its measure
+   !> they are those of the margin.
    pure function changes_of_measure(par, inc, time, sigma, y, de, dp_c, scans, turn) result(change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc
