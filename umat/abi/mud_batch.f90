@@ -418,11 +418,11 @@ contains
       logical, intent(in) :: raised   !< The point began, with its mean stress lifted.
       type(summary_t) :: one
 
-      one = summary_t(pnewdt=report%pnewdt, rates=real(report%n_rate, wp), substeps=real(report%n_substep, wp), &
-                      report=report)
+      one = summary_t(pnewdt=report%pnewdt, rates=real(report%counters%rate, wp), &
+                      substeps=real(report%counters%substep, wp), report=report)
       if (raised) one%lifted = 1
       if (report%status == MUD_OK) then
-         one%tensile = report%n_tensile
+         one%tensile = report%counters%tensile
       else
          one%failed = 1
          one%worst = number

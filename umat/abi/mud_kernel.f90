@@ -41,8 +41,8 @@ module mud_kernel
 
    !> struct mud_report of mud.h.
    type, bind(c) :: report_t
-      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reset, n_floor, n_cap_d, n_cap_h, &
-                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile, n_turns_cleared
+      integer(c_int) :: status, subject, index
+      type(counters_t) :: counters
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type report_t
 
@@ -338,20 +338,7 @@ contains
       report%value = host_value(status)
       report%lower = status%lower*host_factor(status)
       report%upper = status%upper*host_factor(status)
-      report%n_rate = counters%rate
-      report%n_substep = counters%substep
-      report%n_reject = counters%reject
-      report%n_reset = counters%reset
-      report%n_floor = counters%floor
-      report%n_cap_d = counters%cap_d
-      report%n_cap_h = counters%cap_h
-      report%n_hysteresis = counters%held_back
-      report%n_iso_kept = counters%iso_kept
-      report%n_no_root = counters%no_root
-      report%n_min_step = counters%min_step
-      report%n_open = counters%open
-      report%n_tensile = counters%tensile
-      report%n_turns_cleared = counters%cleared
+      report%counters = counters
       report%reached = reached
       report%pnewdt = 1.0_wp
       if (status%code /= MUD_OK) report%pnewdt = min(max(reached, SMALLEST_CUT), LARGEST_CUT)

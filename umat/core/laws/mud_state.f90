@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> State of an integration point, and its place in STATEV.
 module mud_state
+   use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_kinds, only: wp
    use mud_params, only: options_t
@@ -103,9 +104,9 @@ module mud_state
       type(turns_t) :: turns
    end type state_t
 
-   !> Counters of what an update did.
-   type :: counters_t
-      integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, held_back = 0, &
+   !> Counters of what an update did, as struct mud_report of mud.h has them.
+   type, bind(c) :: counters_t
+      integer(c_int) :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, held_back = 0, &
                  iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, cleared = 0
    end type counters_t
 contains

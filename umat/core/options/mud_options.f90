@@ -14,7 +14,7 @@ module mud_options
    use mud_vector, only: NY, Y_OPTIONS, Y_SHEAR
    implicit none (type, external)
    private
-   public :: of_options_t, has_numbers, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, &
+   public :: of_options_t, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, &
              look_at_numbers, rates_of_numbers, add_volume_rates, move_numbers
    !> A bend of D and 1/h with (r - r_in):n, the same in every direction, is that of the one option that bends.
    public :: bend_t, bend_of, bend, bend_of_hardening, changes_of_bend
@@ -35,7 +35,8 @@ module mud_options
       real(wp) :: log_0(DIRECTIONS)  !< derivatives of ln chi' where the substep began
    end type past_changes_t
 contains
-   !> Number of entries of the integrated vector that may change: those of options that are off stand last.
+   !> Number of entries of the integrated vector that may change: those of options that are off stand last. Y_SHEAR
+   !> where no option has any.
    pure integer function live_numbers(par) result(n)
       type(params_t), intent(in) :: par
 
@@ -43,13 +44,6 @@ contains
       if (par%preloading) n = Y_CONTRACTION
       if (par%fluid) n = Y_FLUIDITY
    end function live_numbers
-
-   !> True where an option with numbers of the vector is on.
-   pure logical function has_numbers(par)
-      type(params_t), intent(in) :: par
-
-      has_numbers = par%preloading .or. par%fluid
-   end function has_numbers
 
    !> Numbers of a point without a past [-].
    pure subroutine new_numbers(state)

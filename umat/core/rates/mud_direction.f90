@@ -289,6 +289,8 @@ contains
       logical, intent(in) :: is_root
       real(wp), intent(out) :: lower, upper       !< tau of the interval's ends, without sign
       logical, intent(out) :: crossed
+      type(moduli_t) :: m
+      type(angle_t) :: at
       real(wp) :: f(-1:POINTS + 2), above(POINTS), fine(POINTS), above_fine(POINTS), step, reach, from
       integer :: i, j, intervals
 
@@ -299,7 +301,8 @@ contains
       if (is_root) intervals = POINTS + 1   ! the known root itself is no crossing
       step = last/intervals
       call residuals(par, eq, arc, side, 0.0_wp, step, f(1:POINTS), above)
-      f(-1:0) = residual_at_t(par, eq, arc, side)
+      call evaluate_direction(par, eq, arc, 0.0_wp, m, at)
+      f(-1:0) = side*at%residual
       f(POINTS + 1:) = merge(0.0_wp, f(POINTS), is_root)
       do i = 0, intervals - 1
          from = i*step
@@ -326,19 +329,6 @@ contains
          return
       end do
    end subroutine scan_arc
-
-   !> The residual at w = 0, in units of its side [kPa].
-   pure real(wp) function residual_at_t(par, eq, arc, side) result(residual)
-      type(params_t), intent(in) :: par
-      type(equation_t), intent(in) :: eq
-      type(arc_t), intent(in) :: arc
-      real(wp), intent(in) :: side
-      type(moduli_t) :: m
-      type(angle_t) :: at
-
-      call evaluate_direction(par, eq, arc, 0.0_wp, m, at)
-      residual = side*at%residual
-   end function residual_at_t
 
    !> The residual in units of its side, and a number that is not negative where it is positive at an admissible angle,
    !> at equal steps of tau from `from` on: the same equation as in evaluate_direction, of all points together.
