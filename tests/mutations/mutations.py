@@ -128,7 +128,7 @@ MUTATIONS = [
     ("no contraction cap", (EQUATION, "par%cap_d*eq%two_g/eq%k_e", "1.0e9_wp*eq%two_g/eq%k_e")),
     ("softening cap twice as large", (EQUATION, "limit = eq%least_h*positive", "limit = 2.0_wp*eq%least_h*positive")),
     ("first root found taken",
-     (DIRECTION, "if (w%several .or. .not. found) call scan", "if (.not. found) call scan")),
+     (DIRECTION, "if (w%several .or. .not. found) then", "if (.not. found) then")),
     ("no look at the floor before a rising (r - r_in):n",
      (DIRECTION, "single_root = side*there%residual < 0.0_wp", "single_root = there%scale > 0.0_wp")),
     ("plastic shear without sqrt(2/3)", (RATES, "w%d_eps_q = SQRT_2_3*w%l", "w%d_eps_q = w%l")),

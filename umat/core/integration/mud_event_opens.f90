@@ -4,11 +4,10 @@ module mud_event_opens
    use mud_event, only: event_t, NO_RATE, AT, BY_STATE, ORDINARY, ELASTIC
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_rate, only: rate_t
    use mud_tensor, only: trace
    implicit none (type, external)
    private
-   public :: OPENS, height, height_rate
+   public :: OPENS, height
 
    !> The function is the height.
    type(event_t), parameter :: OPENS = event_t(ORDINARY .or. ELASTIC, NO_RATE, AT, BY_STATE)
@@ -21,12 +20,4 @@ contains
 
       height = trace(sigma)/(3.0_wp*par%p_min) - 1.0_wp
    end function height
-
-   !> Rate of the height of p' above p_min [-], per unit of pseudo-time.
-   pure real(wp) function height_rate(par, w)
-      type(params_t), intent(in) :: par
-      type(rate_t), intent(in) :: w
-
-      height_rate = w%d_p/par%p_min
-   end function height_rate
 end module mud_event_opens

@@ -7,7 +7,7 @@ module mud_event_return
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
-   use mud_return_point, only: beyond_target, target_limit, is_limited
+   use mud_return_point, only: beyond_target, target_limit
    use mud_tensor, only: DIRECTIONS, contractions
    use mud_trial, only: trial_t
    use mud_vector, only: NY
@@ -36,11 +36,12 @@ contains
       real(wp), intent(in) :: psi
       type(event_changes_t), intent(in) :: c
       real(wp) :: slopes(DIRECTIONS)
-      real(wp) :: m_b
+      real(wp) :: m_b, limit
 
       m_b = bounding_ratio(par%critical, psi)
+      limit = target_limit(par, trial%process)
       slopes = contractions(c%r, trial%process%direction)
-      if (is_limited(par, trial%process, m_b)) &
-         slopes = slopes - (target_limit(par, trial%process)*bounding_slope(par%critical, psi, m_b))*c%psi
+      ! where the bounding surface sets the target
+      if (limit*m_b < trial%process%target) slopes = slopes - (limit*bounding_slope(par%critical, psi, m_b))*c%psi
    end function slopes_of_return
 end module mud_event_return

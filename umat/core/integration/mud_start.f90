@@ -10,14 +10,14 @@ module mud_start
    use mud_options, only: new_numbers
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
-   use mud_retention, only: saturation_t, saturation, begin_saturation
+   use mud_retention, only: saturation_t, saturation, begin_saturation, note_saturation
    use mud_reversal, only: new_memory
    use mud_state, only: state_t, E_LOWER, E_UPPER
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_VOID_RATIO, ON_VOID_RATIO
    use mud_tensor, only: trace, is_finite
    implicit none (type, external)
    private
-   public :: initial_state, finish_state, keep_end, has_tension
+   public :: initial_state, finish_state, has_tension
 
 contains
    !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
@@ -72,7 +72,6 @@ contains
       type(state_t), intent(inout) :: state
       type(saturation_t), intent(out) :: sat
       type(bonding_t) :: bond
-      real(wp) :: psi
 
       bond = UNBONDED
       if (is_bonded(law, state%p_c)) then
@@ -82,20 +81,10 @@ contains
          sat = saturation(law%retention_t, state%p_c, state%e)
       end if
       if (state%gap > 0.0_wp .and. is_bonded(law, state%p_c)) bond = bonding(law, state%p_c, soil_void_ratio(state))
-      psi = state_parameter(par%critical, bond%f, soil_void_ratio(state), max(trace(state%sigma)/3.0_wp, par%p_min))
-      call keep_end(law, sat, psi, state)
+      state%psi = state_parameter(par%critical, bond%f, soil_void_ratio(state), &
+                                  max(trace(state%sigma)/3.0_wp, par%p_min))
+      call note_saturation(law%retention_t, sat, state%s_w)
    end subroutine finish_state
-
-   !> The state keeps what finish_state finds.
-   pure subroutine keep_end(law, sat, psi, state)
-      type(suction_law_t), intent(in) :: law
-      type(saturation_t), intent(in) :: sat
-      real(wp), intent(in) :: psi
-      type(state_t), intent(inout) :: state
-
-      if (.not. law%hysteresis) state%s_w = sat%s_w   ! with it S_w is the state's own
-      state%psi = psi
-   end subroutine keep_end
 
    !> True if a principal stress is negative (tensile): Sylvester's criterion fails. s is an effective stress,
    !> compression positive, in any unit. docs/theory/material.md section 6.5.

@@ -16,7 +16,7 @@ module mud_retention
    ! What the rest of the core asks, what it asks along an increment, and single branches.
    public :: retention_t, saturation_t, turns_t, NO_TURNS, saturation, curve_saturation, saturation_curvature, &
              change_with_turn, moves_with_turn, check_retention, prepare_retention, read_preset, check_preset, &
-             check_saturation, begin_saturation, saturation_from
+             check_saturation, begin_saturation, note_saturation, saturation_from
    public :: course_t, begin_course, list_kinks, take_branch, turn_around, end_course, slopes_of_suction, MAX_KINKS
    public :: path_t, begin_path, move_along, branch_of, begin_at_turn, saturation_after, keep_turns, log_suction, &
              NO_SUCTION, on_main_curve_t, on_main_curve, main_curve
@@ -228,6 +228,15 @@ contains
       turns = path%turns
       branch = branch_of(self, path)
    end subroutine begin_saturation
+
+   !> S_w of a state where it is a function of suction and void ratio; with hysteresis it is the state's own.
+   pure subroutine note_saturation(self, sat, s_w)
+      type(retention_t), intent(in) :: self
+      type(saturation_t), intent(in) :: sat
+      real(wp), intent(inout) :: s_w
+
+      if (.not. self%hysteresis) s_w = sat%s_w
+   end subroutine note_saturation
 
    !> Degree of saturation after a change of suction from p_c0 to p_c [kPa] at a void ratio [-], as the next update has
    !> it; with hysteresis from S_w and turning points of a state. MUD_BAD_STATE as of check_saturation.

@@ -34,7 +34,7 @@ module mud_consistent
    use mud_vector, only: NY, Y_SHEAR
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, &
+   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, &
              changes_of_parting, change_with_size, changes_along, changes_of_ratio, &
              linearise_stage
 
@@ -80,16 +80,6 @@ contains
       sens%settled = depth
       call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
-
-   !> A phase begins whose end has a pseudo-time that changes by end_shift [-]. Its substeps stretch with it.
-   pure subroutine begin_stretch(inc, end_shift, sens)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: end_shift(DIRECTIONS)
-      type(sensitivity_t), intent(inout) :: sens
-
-      sens%end_shift = end_shift
-      sens%stretch = (end_shift - sens%shift)/(inc%to - inc%from)
-   end subroutine begin_stretch
 
    !> Carries the derivatives through an accepted substep h, a share of inc [-], the last one of a phase or not.
    !> docs/theory/integration.md section 5.3.

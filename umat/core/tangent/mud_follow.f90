@@ -2,7 +2,7 @@
 !> The derivatives of the consistent tangent follow an update: they read what it left of a phase, a turn of suction, a
 !> substep, and nothing of theirs goes back; docs/theory/integration.md section 5.3.
 module mud_follow
-   use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_of_parting, &
+   use mud_consistent, only: sensitivity_t, propagate, changes_of_parting, &
       changes_of_ratio, jump_of_memory
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: change_of_turn, change_of_passing
@@ -30,7 +30,8 @@ contains
       type(sensitivity_t), intent(inout) :: sens
 
       sens%driving%scans = moves_with_turn(inc%suction%retention_t)
-      call begin_stretch(inc, change_of_cut(par, inc, cut, sens), sens)
+      sens%end_shift = change_of_cut(par, inc, cut, sens)
+      sens%stretch = (sens%end_shift - sens%shift)/(inc%to - inc%from)   ! substeps stretch with the phase
    end subroutine follow_phase
 
    !> Suction has turned: ln x of the turn goes with suction step and volume [1/kPa, -]. docs/theory/material.md section
