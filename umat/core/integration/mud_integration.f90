@@ -80,9 +80,7 @@ contains
 
       it%jump = kind
       it%n_jumps = it%n_jumps + 1
-      it%jumps(it%n_jumps)%kind = kind
-      it%jumps(it%n_jumps)%before = before
-      it%jumps(it%n_jumps)%after = it%state%memory
+      it%jumps(it%n_jumps) = jump_t(kind, before, it%state%memory)
       it%trigger = it%trial%w(1)
    end subroutine note_jump
 end module mud_integration
