@@ -100,6 +100,7 @@ contains
       type(arrays_t) :: arrays
       type(mud_status_t) :: status
       type(summary_t) :: total
+      type(summary_t), pointer :: place
       type(output_t) :: output(WIDTH)
       type(report_t) :: report(WIDTH)
       integer :: first, i, j(WIDTH), k(WIDTH), n
@@ -157,7 +158,9 @@ contains
       end do
       !$omp end parallel do
       run = total%failed
-      if (c_associated(summary)) call give_summary(summary, total)
+      if (.not. c_associated(summary)) return
+      call c_f_pointer(summary, place)
+      place = total
    end function run
 
    !> Status of the counts and the kind of tangent of a call, and of an array that the task needs and that is missing.
@@ -415,11 +418,11 @@ contains
       logical, intent(in) :: raised   !< The point began, with its mean stress lifted.
       type(summary_t) :: one
 
-      one = summary_t(pnewdt=report%pnewdt, rates=real(report%n_rate, wp), substeps=real(report%n_substep, wp), &
-                      report=report)
+      one = summary_t(pnewdt=report%pnewdt, rates=real(report%counters%rate, wp), &
+                      substeps=real(report%counters%substep, wp), report=report)
       if (raised) one%lifted = 1
       if (report%status == MUD_OK) then
-         one%tensile = report%n_tensile
+         one%tensile = report%counters%tensile
       else
          one%failed = 1
          one%worst = number
@@ -447,15 +450,6 @@ contains
       total%rates = total%rates + one%rates
       total%substeps = total%substeps + one%substeps
    end subroutine add
-
-   subroutine give_summary(summary, value)
-      type(c_ptr), intent(in) :: summary
-      type(summary_t), intent(in) :: value
-      type(summary_t), pointer :: place
-
-      call c_f_pointer(summary, place)
-      place = value
-   end subroutine give_summary
 
    !> The number asked for, at most one a point and MOST_THREADS: a process ends where the system gives it no more. 0 or
    !> less means what OpenMP would take. 1 in a process that may not use threads.

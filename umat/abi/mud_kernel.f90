@@ -14,9 +14,9 @@ module mud_kernel
    use mud_registry, only: NSTATV, NSTATV_BASE, VARIABLES, S_DSIGMA_DPC, S_N_RATE, S_N_TENSILE, S_DSW_DPC, &
       S_DSW_DEV, S_ELASTIC_DOMAIN, S_STACK, ENTRY_SIZE, S_TURNS
    use mud_retention, only: check_preset, check_retention, check_saturation
-   use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_NSTATV, MUD_BAD_INPUT, MUD_BAD_OPTION, &
-      MUD_NOT_FINITE, ON_STATEV, ON_STRESS, ON_STRAIN, ON_SUCTION, ON_ARGUMENT
+   use mud_state, only: state_t, counters_t, pack_state, unpack_state, statev_size, check_size
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_BAD_INPUT, MUD_BAD_OPTION, MUD_NOT_FINITE, ON_STRESS, &
+      ON_STRAIN, ON_SUCTION, ON_ARGUMENT
    use mud_tensor, only: is_finite, within, all_finite, norm, rotate
    use mud_trace, only: trace_t
    implicit none (type, external)
@@ -41,8 +41,8 @@ module mud_kernel
 
    !> struct mud_report of mud.h.
    type, bind(c) :: report_t
-      integer(c_int) :: status, subject, index, n_rate, n_substep, n_reject, n_reset, n_floor, n_cap_d, n_cap_h, &
-                        n_hysteresis, n_iso_kept, n_no_root, n_min_step, n_open, n_tensile, n_turns_cleared
+      integer(c_int) :: status, subject, index
+      type(counters_t) :: counters
       real(c_double) :: value, lower, upper, reached, pnewdt
    end type report_t
 
@@ -76,7 +76,7 @@ contains
       integer :: n
 
       n = statev_size(par%options_t)
-      if (size(statev) < n) status = wrong_nstatv(size(statev), par%options_t)
+      call check_size(size(statev), par%options_t, status)
       call check_preset(par%suction%retention_t, saturation, status)
       e = void_ratio
       if (within(e, 0.0_wp)) e = par%e_0
@@ -199,11 +199,8 @@ contains
       real(wp), intent(inout) :: packed(NSTATV)   !< Totals so far.
       type(mud_status_t), intent(out) :: status
 
-      if (size(statev) < statev_size(par%options_t)) then
-         status = wrong_nstatv(size(statev), par%options_t)
-         return
-      end if
       call unpack_state(statev, par%options_t, state, status)
+      if (status%code /= MUD_OK) return
       call check_saturation(par%suction%retention_t, state%p_c, state%e, state%s_w, status)
       call keep_totals(statev_size(par%options_t), statev, packed)
       state%sigma = -stress
@@ -328,14 +325,6 @@ contains
       host_factor = merge(2.0_wp, 1.0_wp, status%subject == ON_STRAIN .and. status%index > 3)
    end function host_factor
 
-   pure function wrong_nstatv(n, options) result(status)
-      integer, intent(in) :: n
-      type(options_t), intent(in) :: options
-      type(mud_status_t) :: status
-
-      status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(statev_size(options), wp), huge(1.0_wp))
-   end function wrong_nstatv
-
    !> Report of an update that so many counters count.
    pure function report_of(status, counters, reached) result(report)
       type(mud_status_t), intent(in) :: status
@@ -349,20 +338,7 @@ contains
       report%value = host_value(status)
       report%lower = status%lower*host_factor(status)
       report%upper = status%upper*host_factor(status)
-      report%n_rate = counters%rate
-      report%n_substep = counters%substep
-      report%n_reject = counters%reject
-      report%n_reset = counters%reset
-      report%n_floor = counters%floor
-      report%n_cap_d = counters%cap_d
-      report%n_cap_h = counters%cap_h
-      report%n_hysteresis = counters%held_back
-      report%n_iso_kept = counters%iso_kept
-      report%n_no_root = counters%no_root
-      report%n_min_step = counters%min_step
-      report%n_open = counters%open
-      report%n_tensile = counters%tensile
-      report%n_turns_cleared = counters%cleared
+      report%counters = counters
       report%reached = reached
       report%pnewdt = 1.0_wp
       if (status%code /= MUD_OK) report%pnewdt = min(max(reached, SMALLEST_CUT), LARGEST_CUT)

@@ -3,18 +3,16 @@
 module mud_one_point
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use mud_advice, only: doubts_on_start, advice_on_start, ADVICE_LENGTH
-   use mud_host_increment, only: host_increment, never_began, suction_change, kind_of, is_present, is_total
+   use mud_host_increment, only: host_increment, never_began, suction_change, is_present, is_total
    use mud_kernel, only: report_t, output_t, kernel_begin, kernel_point, kernel_tangent, failed_report, copy_statev
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_pieces, only: update_in_pieces
-   use mud_prepared, only: prepared_t, find_prepared
+   use mud_prepared, only: prepared_t, find_prepared, start_t, find_start
    use mud_refusals, only: place_t, place_at, begin_at, remark_on_begun, remark_on_end, remark_on_void_ratio, &
       save_if_asked
    use mud_registry, only: NSTATV, S_SATURATION, S_SUCTION
-   use mud_state, only: statev_size
-   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_NSTATV, MUD_BAD_OPTION, ON_ARGUMENT, &
-      ON_STATEV
+   use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_to_host, only: put
    use mud_trace, only: trace_t
    implicit none (type, external)
@@ -27,13 +25,6 @@ module mud_one_point
    type, bind(c) :: blocks_t
       real(c_double) :: dsig_deps(6, 6), dsig_dpc(6), dsw_deps(6), dsw_dpc, s_w
    end type blocks_t
-
-   !> Material, state and strain that the pointers of a host lead to.
-   type :: start_t
-      type(prepared_t), pointer :: material
-      real(c_double), pointer, contiguous :: stress(:), statev(:)
-      real(wp) :: d_strain(6) = 0.0_wp
-   end type start_t
 contains
    !> Begins a point, as kernel_begin: tension positive, stress and suction in the unit of p_atm, void ratio and
    !> saturation [-]. MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, or the code of kernel_begin; on an error nothing but text is
@@ -215,33 +206,6 @@ contains
       call give_report(report, report_out)
       c_trace_increment = report%status
    end function c_trace_increment
-
-   !> Finds the material, state and strain of an increment, or why it cannot begin: MUD_NULL_ARGUMENT, MUD_BAD_OPTION,
-   !> MUD_NOT_PREPARED, MUD_BAD_NSTATV.
-   subroutine find_start(storage, stress0, statev0, n_statev, dstrain, tangent, needs_strain, start, status)
-      type(c_ptr), intent(in) :: storage, stress0, statev0, dstrain
-      integer(c_int), intent(in) :: n_statev, tangent
-      logical, intent(in) :: needs_strain   !< Without it a NULL strain is none.
-      type(start_t), intent(out) :: start
-      type(mud_status_t), intent(out) :: status
-      real(c_double), pointer, contiguous :: strain(:)
-      integer :: n
-
-      call find_prepared(storage, start%material, status)
-      if (.not. (c_associated(stress0) .and. c_associated(statev0) .and. &
-                 (c_associated(dstrain) .or. .not. needs_strain))) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
-      if (status%code == MUD_OK .and. kind_of(tangent) < 0) &
-         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp))
-      if (status%code /= MUD_OK) return
-      n = statev_size(start%material%par%options_t)
-      if (n_statev < n) status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n_statev, wp), real(n, wp), huge(1.0_wp))
-      if (status%code /= MUD_OK) return
-      call c_f_pointer(stress0, start%stress, [6])
-      call c_f_pointer(statev0, start%statev, [n])
-      if (.not. c_associated(dstrain)) return
-      call c_f_pointer(dstrain, strain, [6])
-      start%d_strain = strain
-   end subroutine find_start
 
    subroutine give_state(output, stress1, statev1)
       type(output_t), intent(in) :: output

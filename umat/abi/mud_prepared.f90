@@ -3,18 +3,20 @@
 module mud_prepared
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_associated, c_f_pointer
    use, intrinsic :: iso_fortran_env, only: int64
+   use mud_host_increment, only: kind_of
    use mud_kernel, only: report_t, failed_report
    use mud_kinds, only: wp
    use mud_messages, only: report_text
    use mud_params, only: params_t, read_params, completed
    use mud_registry, only: NPROPS
    use mud_retention, only: check_retention, prepare_retention
-   use mud_state, only: statev_size
+   use mud_state, only: statev_size, check_size
    use mud_status, only: mud_status_t, fail, MUD_OK, MUD_NULL_ARGUMENT, MUD_NOT_PREPARED, MUD_BAD_OPTION, ON_ARGUMENT
    use mud_to_host, only: put
    implicit none (type, external)
    private
-   public :: prepared_t, find_prepared, find_materials, c_prepared_size, c_prepared_statev, c_prepare, c_check_props
+   public :: prepared_t, find_prepared, find_materials, start_t, find_start
+   public :: c_prepared_size, c_prepared_statev, c_prepare, c_check_props
 
    !> Contents of the caller's storage. The marks at both ends tell it from storage that was never prepared, was
    !> prepared by a library with other parameters, or was written over at an edge.
@@ -24,6 +26,13 @@ module mud_prepared
       real(wp) :: props(NPROPS)   !< PROPS that the parameters were read from.
       integer(int64) :: tail = 0
    end type prepared_t
+
+   !> Material, state and strain that the pointers of a host lead to.
+   type :: start_t
+      type(prepared_t), pointer :: material
+      real(c_double), pointer, contiguous :: stress(:), statev(:)
+      real(wp) :: d_strain(6) = 0.0_wp
+   end type start_t
 
    integer(int64), parameter :: MARK = int(z'4D55447072657061', int64)   !< "MUDprepa"
    real(wp), parameter :: BITS_OF_A_DOUBLE = storage_size(1.0_wp)
@@ -142,6 +151,31 @@ contains
             status = fail(MUD_NOT_PREPARED, ON_ARGUMENT)
       end if
    end subroutine find_materials
+
+   !> Finds the material, state and strain of an increment, or why it cannot begin: MUD_NULL_ARGUMENT, MUD_BAD_OPTION,
+   !> MUD_NOT_PREPARED, MUD_BAD_NSTATV.
+   subroutine find_start(storage, stress0, statev0, n_statev, dstrain, tangent, needs_strain, start, status)
+      type(c_ptr), intent(in) :: storage, stress0, statev0, dstrain
+      integer(c_int), intent(in) :: n_statev, tangent
+      logical, intent(in) :: needs_strain   !< Without it a NULL strain is none.
+      type(start_t), intent(out) :: start
+      type(mud_status_t), intent(out) :: status
+      real(c_double), pointer, contiguous :: strain(:)
+
+      call find_prepared(storage, start%material, status)
+      if (.not. (c_associated(stress0) .and. c_associated(statev0) .and. &
+                 (c_associated(dstrain) .or. .not. needs_strain))) status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
+      if (status%code == MUD_OK .and. kind_of(tangent) < 0) &
+         status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(tangent, wp))
+      if (status%code /= MUD_OK) return
+      call check_size(n_statev, start%material%par%options_t, status)
+      if (status%code /= MUD_OK) return
+      call c_f_pointer(stress0, start%stress, [6])
+      call c_f_pointer(statev0, start%statev, [statev_size(start%material%par%options_t)])
+      if (.not. c_associated(dstrain)) return
+      call c_f_pointer(dstrain, strain, [6])
+      start%d_strain = strain
+   end subroutine find_start
 
    !> Mark of this library in a storage; a library with another number of parameters has another one.
    pure integer(int64) function mark_of()

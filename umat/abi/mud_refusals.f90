@@ -245,26 +245,16 @@ contains
                          CLOSING)
    end subroutine remark
 
-   !> Passes the warning of mud_validate_props on: hosts do not ask for it. Asked where a point begins. PROPS of an
-   !> update that passed; in the unit of p_atm.
-   subroutine remark_on_props(props, place)
-      real(wp), intent(in) :: props(NPROPS)
-      type(place_t), intent(in) :: place
-      character(ADVICE_LENGTH) :: advice
-
-      advice = advice_on(props)
-      if (advice == '') return
-      if (first_time(ON_PROPS_UNITS)) call remark(advice, place)
-   end subroutine remark_on_props
-
-   !> Begins a point without a past, and says what is doubtful about it and about PROPS. Arguments, units and codes as
-   !> in kernel_begin; STATEV presets the void ratio and, with hysteresis, the saturation.
+   !> Begins a point without a past, and says what is doubtful about it and about PROPS, the warning of
+   !> mud_validate_props: hosts do not ask for that. Arguments, units and codes as in kernel_begin; STATEV presets the
+   !> void ratio and, with hysteresis, the saturation.
    subroutine begin_at(par, props, stress, suction, statev, place, report)
       type(params_t), intent(in) :: par
       real(wp), intent(in) :: props(NPROPS), suction
       real(wp), intent(inout) :: stress(6), statev(:)
       type(place_t), intent(in) :: place
       type(report_t), intent(out) :: report
+      character(ADVICE_LENGTH) :: advice
       real(wp) :: given(6)
 
       given = stress
@@ -272,7 +262,9 @@ contains
                         read_preset(par%suction%retention_t, statev(S_SATURATION)))
       if (report%status /= MUD_OK) return
       call remark_on_begun(par, given, statev, place)
-      call remark_on_props(props, place)
+      advice = advice_on(props)
+      if (advice == '') return
+      if (first_time(ON_PROPS_UNITS)) call remark(advice, place)
    end subroutine begin_at
 
    !> Says once a process what is doubtful about a point that began: arguments of doubts_on_start.
@@ -300,29 +292,20 @@ contains
                                                              advice_on_void_ratio(statev), place)
    end subroutine remark_on_void_ratio
 
-   !> Says what an update that passed has led to: where its state is, that has no meaning.
+   !> Says where the state after an update that passed has no meaning: p' below zero, which the tension cut-off
+   !> prevents where it is on, or its void ratio.
    subroutine remark_on_end(stress, statev, place)
-      real(wp), intent(in) :: stress(6), statev(:)   !< State after the update, as in remark_on_pressure and
-                                                     !< remark_on_void_ratio.
+      real(wp), intent(in) :: stress(6), statev(:)   !< Effective stress, tension positive, in the unit of p_atm.
       type(place_t), intent(in) :: place
 
       if (.not. all(is_finite(stress))) return   ! as vumat_ leaves a refused point
-      call remark_on_pressure(stress, place)
+      if (sum(stress(1:3)) > 0.0_wp) then
+         if (first_time(ON_PRESSURE)) call remark('the mean effective stress p'' is '// &
+            trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no meaning below 0, and its tension cut-off '// &
+            'is off: do not use the results from here on; set cutoff = 1', place)
+      end if
       call remark_on_void_ratio(statev, place)
    end subroutine remark_on_end
-
-   !> Says that p' fell below zero, which the tension cut-off prevents where it is on. `stress`: effective, at the end
-   !> of an update that passed, tension positive, in the unit of p_atm.
-   subroutine remark_on_pressure(stress, place)
-      real(wp), intent(in) :: stress(6)
-      type(place_t), intent(in) :: place
-
-      if (.not. sum(stress(1:3)) > 0.0_wp) return
-      if (first_time(ON_PRESSURE)) call remark('the mean effective stress p'' is '// &
-         trim(number(-sum(stress(1:3))/3.0_wp))//'. The model has no meaning below 0, and its tension cut-off is '// &
-         'off: do not use the results from here on; set cutoff = 1', &
-         place)
-   end subroutine remark_on_pressure
 
    !> Place of an increment in the analysis, as far as the host says it.
    function place_text(place) result(text)

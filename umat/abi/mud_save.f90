@@ -2,19 +2,18 @@
 !> A failed increment as a case file, which mud_triax runs alone. The only place of the library that writes a
 !> file, and only where it is asked to.
 module mud_save
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_size_t, c_associated, &
-      c_f_pointer
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_size_t, c_associated
    use mud_c_api, only: VERSION
    use mud_host_increment, only: host_increment, never_began, suction_change
    use mud_kernel, only: report_t, output_t
    use mud_kinds, only: wp
    use mud_messages, only: status_text, report_text
    use mud_params, only: options_of
-   use mud_prepared, only: prepared_t, find_prepared
+   use mud_prepared, only: start_t, find_start
    use mud_registry, only: NPROPS, P_TANGENT, P_E_0, PROPERTIES, COMPONENTS, S_VOID_RATIO, &
       S_SATURATION, S_SUCTION, statev_name
    use mud_state, only: statev_size
-   use mud_status, only: mud_status_t, MUD_OK, MUD_BAD_NSTATV, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
+   use mud_status, only: mud_status_t, MUD_OK, MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_NOT_WRITTEN
    use mud_tensor, only: within
    use mud_to_host, only: put, get
    implicit none (type, external)
@@ -56,8 +55,7 @@ contains
       type(c_ptr), value :: path, origin, storage, stress0, statev0, dstrain, text
       integer(c_int), value :: n_statev, tangent, len
       real(c_double), value :: suction
-      real(c_double), pointer, contiguous :: stress_in(:), statev_in(:), dstrain_in(:)
-      type(prepared_t), pointer :: material
+      type(start_t) :: start
       type(mud_status_t) :: status
       type(report_t) :: report
       type(output_t) :: output
@@ -66,27 +64,23 @@ contains
       character(PROBLEM_LENGTH) :: problem
       logical :: whole
 
-      call find_prepared(storage, material, status)
+      call find_start(storage, stress0, statev0, n_statev, dstrain, tangent, .true., start, status)
       c_save_increment = status%code
-      if (status%code == MUD_OK) then
-         if (n_statev < statev_size(material%par%options_t)) c_save_increment = MUD_BAD_NSTATV
-      end if
-      if (tangent < 0 .or. tangent > LAST_TANGENT) c_save_increment = MUD_BAD_OPTION
-      if (.not. (c_associated(path) .and. c_associated(stress0) .and. c_associated(statev0) .and. &
-                 c_associated(dstrain))) c_save_increment = MUD_NULL_ARGUMENT
+      if (tangent > LAST_TANGENT) c_save_increment = MUD_BAD_OPTION
+      if (.not. c_associated(path)) c_save_increment = MUD_NULL_ARGUMENT
       call put(status_text(c_save_increment), text, len)
       if (c_save_increment /= MUD_OK) return
 
-      call c_f_pointer(stress0, stress_in, [6])
-      call c_f_pointer(statev0, statev_in, [statev_size(material%par%options_t)])
-      call c_f_pointer(dstrain, dstrain_in, [6])
       call get(origin, whence, whole)
       call get(path, name, whole)
       problem = 'the name of the file is empty or too long'
       if (whole .and. name /= '') then
-         call host_increment(material%par, stress_in, statev_in, dstrain_in, suction, tangent, output, report)
-         call write_increment(name, whence, material%props, stress_in, statev_in, dstrain_in, statev_in(S_SUCTION), &
-                              suction_change(statev_in(S_SUCTION), suction), tangent, report, .false., problem)
+         associate (props => start%material%props, suction0 => start%statev(S_SUCTION))
+            call host_increment(start%material%par, start%stress, start%statev, start%d_strain, suction, tangent, &
+                                output, report)
+            call write_increment(name, whence, props, start%stress, start%statev, start%d_strain, suction0, &
+                                 suction_change(suction0, suction), tangent, report, .false., problem)
+         end associate
       end if
       if (problem == '') return
       c_save_increment = MUD_NOT_WRITTEN
@@ -125,7 +119,9 @@ contains
       call line('! An increment of MUD, for mud_triax: compression positive, engineering shear, stresses in the '// &
                 'unit of p_atm.')
       call line('! Library '//VERSION//'. '//report_text(report))
-      write (digits, '(*(i0, :, 1x))') report%status, report%n_substep, report%n_reject, report%n_rate
+      associate (of => report%counters)
+         write (digits, '(*(i0, :, 1x))') report%status, of%substep, of%reject, of%rate
+      end associate
       call line('! Status, substeps, rejected, rates, share reached: '//trim(digits)//' '//bits(report%reached))
       call line('&case')
       call line('   title = '''//trim(without_quotes(origin))//'''')

@@ -8,7 +8,7 @@ module mud_udsm
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_double, c_char, c_null_char, c_associated, c_f_pointer
    use mud_door, only: ORDER, place_of, props_at, statev_at, fewest_props, prepare
    use mud_interface, only: mud_report, mud_blocks, mud_place, mud_prepared_size, mud_prepared_statev, &
-      mud_default_props, mud_increment_at, mud_refuse, mud_text, MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_UNIT, MUD_OK, &
+      mud_increment_at, mud_refuse, mud_text, MUD_PROPS, MUD_STATEV, MUD_NAME, MUD_UNIT, MUD_OK, &
       MUD_NULL_ARGUMENT, MUD_BAD_OPTION, MUD_BAD_NSTATV, MUD_ON_ARGUMENT, MUD_ON_STATEV, MUD_TANGENT_NONE, &
       MUD_TANGENT_ELASTIC, MUD_IN_PIECES
    implicit none (type, external)
@@ -248,14 +248,8 @@ contains
    subroutine state_count(imod, n) bind(c, name='getstatevarcount_')
       integer(c_int), intent(in) :: imod
       integer(c_int), intent(out) :: n
-      real(c_double) :: material(mud_prepared_size()), props(mud_prepared_size())   ! PROPS are kept in it
-      type(mud_report) :: report
 
-      n = 0
-      if (imod /= 1) return
-      n = mud_default_props(props, fewest_props())
-      call prepare(props(:fewest_props()), material, report)
-      n = mud_prepared_statev(material)
+      n = merge(statev_at('turns') - 1, 0, imod == 1)   ! without those of hysteresis
    end subroutine state_count
 
    !> Name of state variable i from 1, empty if there is none.
@@ -283,7 +277,7 @@ contains
       integer :: k
 
       text = ''
-      if (list == MUD_PROPS) call param_count(imod, n)
+      call param_count(imod, n)
       if (list == MUD_STATEV) call state_count(imod, n)
       if (i < 1 .or. i > n) return
       if (mud_text(list, i - 1, field, letters, size(letters)) /= MUD_OK) return

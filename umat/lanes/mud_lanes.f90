@@ -22,7 +22,7 @@ module mud_lanes
    use mud_rates, only: MODE_ORDINARY
    use mud_registry, only: NSTATV_BASE
    use mud_retention, only: course_t, saturation_t
-   use mud_start, only: finish_state, keep_end
+   use mud_start, only: finish_state
    use mud_state, only: state_t, counters_t, statev_size
    use mud_status, only: MUD_OK
    use mud_stiff_direction, only: make_implicit
@@ -187,7 +187,8 @@ contains
       sat%s_w = q%s_w(j)
       sat%ds_dpc = q%ds_dpc(j)
       sat%ds_de = q%ds_de(j)
-      call keep_end(par%suction, sat, q%psi(j), state)
+      state%s_w = sat%s_w
+      state%psi = q%psi(j)
       if (par%rho_e > 0.0_wp) state%from_centre = q%strain(j, :)
    end subroutine give_end
 

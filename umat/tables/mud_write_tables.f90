@@ -28,8 +28,7 @@ program mud_write_tables
    end do
    write (output_unit, '(a)') '/* Written by mud_write_tables from the registry of the library: change it there. */', &
       '#include "mud.h"', 'extern int mud_behaviour(void *view, int components, int unsaturated);'
-   call numbers('const int mud_props_count', [NPROPS], .false.)
-   call numbers('const int mud_statev_count', [NSTATV], .false.)
+   write (output_unit, '(a, i0, ";")') 'const int mud_props_count = ', NPROPS, 'const int mud_statev_count = ', NSTATV
    call texts('mud_props_names', props)
    call texts('mud_props_units', [character(LONG) :: PROPERTIES%unit])
    call texts('mud_statev_names', statev)
@@ -76,18 +75,17 @@ contains
       call flag(name//'_nMainVariables', size(gradients))
       call list(name//'_', 'ModellingHypotheses', [character(LONG) :: HYPOTHESES])
       call list(name//'_', 'Gradients', gradients)
-      call numbers('const int '//name//'_GradientsTypes', types, .true.)
+      call numbers('const int '//name//'_GradientsTypes', types)
       call list(name//'_', 'ThermodynamicForces', forces)
-      call numbers('const int '//name//'_ThermodynamicForcesTypes', types, .true.)
+      call numbers('const int '//name//'_ThermodynamicForcesTypes', types)
       call list(name//'_', 'TangentOperatorBlocks', blocks)
       call list(name//'_', 'MaterialProperties', props(:NPROPS_BASE))
       call list(name//'_', 'InternalStateVariables', PREFIX//statev(:NSTATV_BASE))
-      call numbers('const int '//name//'_InternalStateVariablesTypes', &
-                   [(SCALAR, k=1, NSTATV_BASE)], .true.)
+      call numbers('const int '//name//'_InternalStateVariablesTypes', [(SCALAR, k=1, NSTATV_BASE)])
       call list(name//'_', 'ExternalStateVariables', none)
-      call numbers('const int '//name//'_ExternalStateVariablesTypes', no, .true.)
+      call numbers('const int '//name//'_ExternalStateVariablesTypes', no)
       call list(name//'_', 'Parameters', none)
-      call numbers('const int '//name//'_ParametersTypes', no, .true.)
+      call numbers('const int '//name//'_ParametersTypes', no)
       call list(name//'_', 'InitializeFunctions', none)
       call list(name//'_', 'PostProcessings', none)
       do k = 1, size(HYPOTHESES)
@@ -128,17 +126,12 @@ contains
       write (output_unit, '(a)') '};'
    end subroutine texts
 
-   !> A number, or an array of them.
-   subroutine numbers(declaration, values, array)
+   !> An array of numbers.
+   subroutine numbers(declaration, values)
       character(*), intent(in) :: declaration
       integer, intent(in) :: values(:)
-      logical, intent(in) :: array
       integer :: k
 
-      if (.not. array) then
-         write (output_unit, '(2a, i0, a)') declaration, ' = ', values(1), ';'
-         return
-      end if
       write (output_unit, '(2a)') declaration, '[] = {'
       write (output_unit, '(3x, 20(i0, ", "))') (values(k), k=1, size(values))
       if (size(values) == 0) write (output_unit, '(a)') '   0'

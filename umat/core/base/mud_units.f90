@@ -4,13 +4,13 @@
 module mud_units
    use mud_kinds, only: wp
    use mud_registry, only: NPROPS, PROPERTIES, UNIT_STRESS, UNIT_STRESS_TO_LAMBDA, P_N_C, P_LAMBDA, P_ALPHA_CSL, &
-      P_N_L, P_P_A, P_P_ATM, P_P_MIN, P_P_ELL
+      P_N_L, P_P_A, P_P_ATM, P_P_MIN
    use mud_tensor, only: is_finite
    implicit none (type, external)
    private
-   public :: stress_unit, bounds_for, convert_props, minimum_stress, threshold_of_fluidity, doubt_t, NDOUBTS, &
-      unit_doubts
-   public :: LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM, CREDIBLE_PRESSURE
+   public :: stress_unit, bounds_for, convert_props, given_or_share, doubt_t, NDOUBTS, unit_doubts
+   public :: LARGEST_STRESS, LARGEST_SUCTION_STEP, SMALLEST_MINIMUM, CREDIBLE_PRESSURE, MINIMUM_DIVISOR, &
+      THRESHOLD_DIVISOR
 
    real(wp), parameter :: LARGEST_STRESS = 1.0e9_wp         !< A stress or suction beyond it is an input error [kPa].
    !> Mean stress of a start up to which it is credible: beyond 50 MPa, 5 km of ground, grains crush [kPa].
@@ -94,22 +94,15 @@ contains
       if (is_allowed) is_allowed = props(i) >= PROPERTIES(i)%lower .and. props(i) <= PROPERTIES(i)%upper
    end function is_allowed
 
-   !> p_min [user's unit]: a forgotten one follows p_atm. It is p_atm/1000 where the entry is not above 0;
-   !> docs/theory/material.md section 6. PROPS are not checked.
-   pure real(wp) function minimum_stress(props) result(p_min)
-      real(wp), intent(in) :: props(NPROPS)
+   !> p_min or p_ell [user's unit]: a forgotten one, not above 0, is p_atm over a divisor; docs/theory/material.md
+   !> sections 6, 4.11. PROPS are not checked.
+   pure real(wp) function given_or_share(props, entry, divisor) result(p)
+      real(wp), intent(in) :: props(NPROPS), divisor
+      integer, intent(in) :: entry
 
-      p_min = props(P_P_MIN)
-      if (p_min <= 0.0_wp) p_min = props(P_P_ATM)/MINIMUM_DIVISOR
-   end function minimum_stress
-
-   !> p_ell [user's unit]: a forgotten one follows p_atm; docs/theory/material.md section 4.11. PROPS are not checked.
-   pure real(wp) function threshold_of_fluidity(props) result(p_ell)
-      real(wp), intent(in) :: props(NPROPS)
-
-      p_ell = props(P_P_ELL)
-      if (p_ell <= 0.0_wp) p_ell = props(P_P_ATM)/THRESHOLD_DIVISOR
-   end function threshold_of_fluidity
+      p = props(entry)
+      if (p <= 0.0_wp) p = props(P_P_ATM)/divisor
+   end function given_or_share
 
    !> Entries of allowed PROPS that look as if p_atm had another unit. Zeros (no shift, p_min by default) have no unit.
    !> PROPS must have passed read_params; a doubt that is not raised says nothing.

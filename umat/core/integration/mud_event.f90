@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
-!> An event inside a substep: a row and a file each, mud_event_NAME, with where it may happen, its function, how this
-!> changes, and what follows. Their list is mud_event_table; docs/theory/integration.md section 4.2.
+!> An event inside a substep: a row and a file each, mud_event_NAME, with what is more than an expression of where it
+!> may happen, its function, how this changes, and what follows. Their list is mud_event_table;
+!> docs/theory/integration.md section 4.2.
 module mud_event
    use mud_bounding, only: psi_of
    use mud_cutoff, only: MODE_HELD
@@ -16,7 +17,7 @@ module mud_event
    implicit none (type, external)
    private
    public :: event_t, event_changes_t, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BEFORE, AT, BEYOND, NOBODY, ORDINARY, &
-             ELASTIC, HELD, EXACT, EXACT_TRIALS, NEARLY, FEW_TRIALS, SHARP_KINK, last_rate, switches, elastic_rate, &
+             ELASTIC, HELD, NEARLY, FEW_TRIALS, SHARP_KINK, last_rate, switches, elastic_rate, &
              psi_at
    public :: NOTHING, BY_STATE, BY_RATE, BY_DRIVE, BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MEMORY
    public :: EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, EVENT_RETURN, &
@@ -54,7 +55,7 @@ module mud_event
    real(wp), parameter :: NEARLY = 1.0e-6_wp
    integer, parameter :: FEW_TRIALS = 10
 
-   integer, parameter :: NOTHING = 0          !< The time does not count.
+   integer, parameter :: NOTHING = 0          !< The time does not count in a derivative: rates are smooth there.
    integer, parameter :: BY_STATE = 1         !< State, void ratio, stress ratio: they are known for all below, too.
    integer, parameter :: BY_RATE = 2          !< The rate there and its direction.
    integer, parameter :: BY_DRIVE = 3         !< These, and the drive n:t of the stress ratio.
@@ -72,10 +73,9 @@ module mud_event
       logical :: concerns(MODE_ORDINARY:MODE_HELD)   !< Substeps that are ordinary, elastic, held.
       integer :: looks_at                            !< NO_RATE, RATE_THERE, RATE_IF_CLOSED
       integer :: side                                !< Where the substep ends: BEFORE, AT, BEYOND.
-      logical :: moves      !< The time of the event counts in a derivative: rates are not smooth there.
-      integer :: depends    !< BY_*: changes with which its function changes.
-      real(wp) :: residual  !< Share of its change below which the function is zero [-].
-      integer :: trials     !< At most.
+      integer :: depends    !< BY_*: changes with which its function changes, and its time, or NOTHING.
+      real(wp) :: residual = EXACT       !< Share of its change below which the function is zero [-].
+      integer :: trials = EXACT_TRIALS   !< At most.
    end type event_t
 
    !> Changes where an event is, along directions side by side; what its function does not change with is not set.

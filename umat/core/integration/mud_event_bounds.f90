@@ -2,19 +2,18 @@
 !> Event: r exceeds the bounding surface inside the elastic domain; docs/theory/memory-rules.md section 4.3.
 module mud_event_bounds
    use mud_bounding, only: excess
-   use mud_event, only: event_t, event_changes_t, NO_RATE, AT, BY_SURFACE, ELASTIC, EXACT, EXACT_TRIALS, psi_at
+   use mud_event, only: event_t, NO_RATE, AT, BY_SURFACE, ELASTIC, psi_at
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
    use mud_rates, only: stress_ratio
-   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: BOUNDS, LARGEST_EXCESS, bounds_function, slopes_of_bounds, bounded
+   public :: BOUNDS, LARGEST_EXCESS, bounds_function
 
-   type(event_t), parameter :: BOUNDS = event_t(ELASTIC, NO_RATE, AT, .true., BY_SURFACE, EXACT, EXACT_TRIALS)
+   type(event_t), parameter :: BOUNDS = event_t(ELASTIC, NO_RATE, AT, BY_SURFACE)
 
    !> Share by which r may exceed the bounding surface: at a low stress an elastic strain of rho_e may be more than the
    !> whole strength. Softening sand is some per cent beyond it and must be able to return where it came from [-].
@@ -31,21 +30,6 @@ contains
       call stress_ratio(par, y(1:6), p, r)
       f = allowed_excess(par, inc, trial) - excess(par%critical, psi_at(par, inc, time, p), r)
    end function bounds_function
-
-   !> Changes of the excess [-].
-   pure function slopes_of_bounds(c) result(slopes)
-      type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(DIRECTIONS)
-
-      slopes = c%excess
-   end function slopes_of_bounds
-
-   !> Ordinary rates follow: beyond the surface by a landing, whichever way the strain leads, for suction may move it.
-   pure subroutine bounded(trial)
-      type(trial_t), intent(inout) :: trial
-
-      trial%pressed = .true.
-   end subroutine bounded
 
    !> Largest excess of r over the bounding surface in a substep inside the elastic domain: from farther outside it is
    !> the excess at the start.

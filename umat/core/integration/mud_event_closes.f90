@@ -3,7 +3,7 @@
 module mud_event_closes
    use mud_cutoff, only: is_parted
    use mud_elastic, only: bulk_slope
-   use mud_event, only: event_t, event_changes_t, RATE_IF_CLOSED, BEYOND, BY_VIRGIN_RATE, HELD, EXACT, EXACT_TRIALS
+   use mud_event, only: event_t, event_changes_t, RATE_IF_CLOSED, BEYOND, BY_VIRGIN_RATE, HELD
    use mud_increment, only: increment_t, rate_of
    use mud_kinds, only: wp
    use mud_options, only: forget_past
@@ -11,15 +11,14 @@ module mud_event_closes
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, MODE_ORDINARY, MODE_ELASTIC
    use mud_state, only: counters_t
-   use mud_tensor, only: DIRECTIONS, ddot
+   use mud_tensor, only: DIRECTIONS, contractions
    use mud_trial, only: trial_t
    use mud_vector, only: NY
    implicit none (type, external)
    private
    public :: CLOSES_AT, may_close, closing_mode, rate_without_past, closes, closing_function, slopes_of_closing
 
-   type(event_t), parameter :: CLOSES_AT = &
-      event_t(HELD, RATE_IF_CLOSED, BEYOND, .true., BY_VIRGIN_RATE, EXACT, EXACT_TRIALS)
+   type(event_t), parameter :: CLOSES_AT = event_t(HELD, RATE_IF_CLOSED, BEYOND, BY_VIRGIN_RATE)
 
    !> An open point closes when p' would rise by this share of the elastic rate: opening and closing at the same rate
    !> would chatter where the two pull the stress ratio to opposite sides [-].
@@ -81,40 +80,19 @@ contains
       closing_function = -closing_rate(inc, openings, w)/elastic_length(inc, w)
    end function closing_function
 
-   !> Changes of closing_rate, at a void ratio e [kPa].
+   !> Changes of closing_rate, at a void ratio e [kPa]. Derivative of docs/theory/material.md sections 6.1, 6.3.
    pure function slopes_of_closing(inc, openings, w, e, c) result(slopes)
       type(increment_t), intent(in) :: inc
       integer, intent(in) :: openings
       type(rate_t), intent(in) :: w
       real(wp), intent(in) :: e
       type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(DIRECTIONS)
-      real(wp) :: strain(6)
-      integer :: j
+      real(wp), dimension(DIRECTIONS) :: slopes, of_length
 
-      do j = 1, DIRECTIONS
-         strain = c%strain(j, :)
-         slopes(j) = change_of_closing_rate(inc, openings, w, e, &
-                                            (c%rates(j, 1) + c%rates(j, 2) + c%rates(j, 3))/3.0_wp, c%e(j), strain, &
-                                            c%d_pc(j))
-      end do
+      of_length = w%k*inc%length*bulk_slope(e)*c%e + sign(1.0_wp, inc%d_pc)*c%d_pc
+      if (inc%length > 0.0_wp) of_length = of_length + (w%k/inc%length)*contractions(c%strain, inc%d_strain)
+      slopes = (c%rates(:, 1) + c%rates(:, 2) + c%rates(:, 3))/3.0_wp - closing_share(openings)*of_length
    end function slopes_of_closing
-
-   !> Change of closing_rate with the rate of p', the void ratio, the strain and the suction step [kPa]. e, de and
-   !> d_strain [-], d_rate and d_pc [kPa]; e is the void ratio at the place. Derivative of docs/theory/material.md
-   !> sections 6.1, 6.3.
-   pure real(wp) function change_of_closing_rate(inc, openings, w, e, d_rate, de, d_strain, d_pc) result(change)
-      type(increment_t), intent(in) :: inc
-      integer, intent(in) :: openings
-      type(rate_t), intent(in) :: w
-      real(wp), intent(in) :: e, d_rate, de, d_strain(6), d_pc
-      real(wp) :: length
-
-      length = inc%length
-      change = w%k*length*de*bulk_slope(e) + sign(1.0_wp, inc%d_pc)*d_pc
-      if (length > 0.0_wp) change = change + w%k*ddot(inc%d_strain, d_strain)/length
-      change = d_rate - closing_share(openings)*change
-   end function change_of_closing_rate
 
    !> Distance of the rate of p' above the one at which an open point closes, positive if it closes [kPa].
    pure real(wp) function closing_rate(inc, openings, w)

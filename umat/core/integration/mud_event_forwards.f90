@@ -1,7 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> Event: a process that drifts back from its beginning goes forwards; docs/theory/memory-rules.md section 1.2.
 module mud_event_forwards
-   use mud_event, only: event_t, event_changes_t, RATE_THERE, AT, BY_RATE, ORDINARY, EXACT
+   use mud_event, only: event_t, event_changes_t, RATE_THERE, AT, BY_RATE, ORDINARY
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_rate, only: rate_t
@@ -12,7 +12,7 @@ module mud_event_forwards
    public :: FORWARDS, may_go_forwards, backwards, slopes_of_forwards
 
    !> The function is `backwards`.
-   type(event_t), parameter :: FORWARDS = event_t(ORDINARY, RATE_THERE, AT, .true., BY_RATE, EXACT, 8)
+   type(event_t), parameter :: FORWARDS = event_t(ORDINARY, RATE_THERE, AT, BY_RATE, trials=8)
 contains
    !> True of a substep that begins backwards and may end forwards.
    pure logical function may_go_forwards(inc, trial) result(may)

@@ -1,20 +1,17 @@
 ! SPDX-License-Identifier: MIT
 !> Event: the isotropic mechanism begins or ends to act while suction changes; docs/theory/material.md section 4.4.
 module mud_event_mechanism
-   use mud_event, only: event_t, event_changes_t, RATE_THERE, BEFORE, BY_MECHANISM, ORDINARY, EXACT, EXACT_TRIALS, &
-      SHARP_KINK, switches
+   use mud_event, only: event_t, RATE_THERE, BEFORE, BY_MECHANISM, ORDINARY, SHARP_KINK, switches
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_rate, only: rate_t
-   use mud_tensor, only: DIRECTIONS
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
-   public :: MECHANISM, mechanism_may_switch, mechanism_function, slopes_of_mechanism
+   public :: MECHANISM, mechanism_may_switch
 
-   type(event_t), parameter :: MECHANISM = &
-      event_t(ORDINARY, RATE_THERE, BEFORE, .true., BY_MECHANISM, EXACT, EXACT_TRIALS)
+   !> The function is the drive of the mechanism over that at the start.
+   type(event_t), parameter :: MECHANISM = event_t(ORDINARY, RATE_THERE, BEFORE, BY_MECHANISM)
 contains
    !> True of a substep with an error that a kink may have made [-], and where the isotropic mechanism begins or ends to
    !> act. Its rates have a kink there, which is sharp while suction changes: a substep across it has an error that
@@ -29,20 +26,4 @@ contains
       if (mechanism_may_switch) &
          mechanism_may_switch = switches(trial%w(1)%iso_drive, trial%w(inc%scheme%stages)%iso_drive)
    end function mechanism_may_switch
-
-   !> Drive of the mechanism over that at the start [-].
-   pure real(wp) function mechanism_function(trial, w)
-      type(trial_t), intent(in) :: trial
-      type(rate_t), intent(in) :: w
-
-      mechanism_function = w%iso_drive/trial%w(1)%iso_drive
-   end function mechanism_function
-
-   !> Changes of the drive [-].
-   pure function slopes_of_mechanism(c) result(slopes)
-      type(event_changes_t), intent(in) :: c
-      real(wp) :: slopes(DIRECTIONS)
-
-      slopes = c%mechanism
-   end function slopes_of_mechanism
 end module mud_event_mechanism

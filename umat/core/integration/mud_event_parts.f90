@@ -2,7 +2,7 @@
 !> Event: the gap of a held point begins or ends, at a place in closed form; docs/theory/material.md section 6.4.
 module mud_event_parts
    use mud_cutoff, only: SHUT
-   use mud_event, only: event_t, NO_RATE, AT, BY_STATE, HELD, EXACT, EXACT_TRIALS
+   use mud_event, only: event_t, NO_RATE, AT, BY_STATE, HELD
    use mud_increment, only: increment_t, void_ratio_at
    use mud_kinds, only: wp
    implicit none (type, external)
@@ -10,7 +10,7 @@ module mud_event_parts
    public :: PARTS, end_at_parting
 
    !> The function is the void ratio.
-   type(event_t), parameter :: PARTS = event_t(HELD, NO_RATE, AT, .true., BY_STATE, EXACT, EXACT_TRIALS)
+   type(event_t), parameter :: PARTS = event_t(HELD, NO_RATE, AT, BY_STATE)
 contains
    !> Ends a held substep h, which begins at a pseudo-time, where its gap begins or ends; shares of inc [-]. h stays
    !> where the gap does neither. docs/theory/integration.md section 4.2.

@@ -2,7 +2,7 @@
 !> Event: (r - r_in):n falls to -x_rev, and a new process begins; docs/theory/memory-rules.md section 1.2.
 module mud_event_reversal
    use mud_error_control, only: changes_root
-   use mud_event, only: event_t, event_changes_t, RATE_THERE, AT, BY_DRIVE, ORDINARY, EXACT, EXACT_TRIALS, last_rate
+   use mud_event, only: event_t, event_changes_t, RATE_THERE, AT, BY_DRIVE, ORDINARY, last_rate
    use mud_increment, only: increment_t, rate_of, store_rate
    use mud_kinds, only: wp
    use mud_mechanism, only: turns_by_resting
@@ -18,7 +18,7 @@ module mud_event_reversal
    public :: REVERSAL, look_for_reversal, slopes_of_reversal
 
    !> The function is (r - r_in):n + x_rev.
-   type(event_t), parameter :: REVERSAL = event_t(ORDINARY, RATE_THERE, AT, .true., BY_DRIVE, EXACT, EXACT_TRIALS)
+   type(event_t), parameter :: REVERSAL = event_t(ORDINARY, RATE_THERE, AT, BY_DRIVE)
 
    real(wp), parameter :: PROBE_BELOW = 0.5_wp   !< A minimum below this share of x_rev above -x_rev is looked at [-].
    !> A reversal beyond which (r - r_in):n is farther from -x_rev than this share of its change may have been jumped

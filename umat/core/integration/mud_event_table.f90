@@ -3,25 +3,25 @@
 !> Jumps of the memory where the next substep begins are mud_transitions. docs/theory/integration.md section 4.2.
 module mud_event_table
    use mud_cutoff, only: is_below
-   use mud_event, only: event_t, event_changes_t, NO_RATE, RATE_THERE, RATE_IF_CLOSED, AT, NOBODY, NOTHING, EXACT, &
-      EXACT_TRIALS, last_rate, psi_at, EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, &
-      EVENT_REVERSAL, EVENT_RETURN, EVENT_TURN, EVENT_PARTS, EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, &
-      EVENT_FORWARDS
-   use mud_event_bounds, only: BOUNDS, bounds_function, slopes_of_bounds, bounded
+   use mud_event, only: event_t, event_changes_t, NO_RATE, RATE_THERE, RATE_IF_CLOSED, AT, NOBODY, NOTHING, &
+      last_rate, psi_at, EVENT_NONE, EVENT_OPENS, EVENT_CLOSES, EVENT_BOUNDS, EVENT_MECHANISM, EVENT_REVERSAL, &
+      EVENT_RETURN, EVENT_TURN, EVENT_PARTS, EVENT_DILATES, EVENT_YIELD, EVENT_UNLOAD, EVENT_FORWARDS
+   use mud_event_bounds, only: BOUNDS, bounds_function
    use mud_event_closes, only: CLOSES_AT, may_close, rate_without_past, closing_function, slopes_of_closing
-   use mud_event_dilates, only: DILATES, may_dilate, dilation_function, slopes_of_dilation
+   use mud_event_dilates, only: DILATES, may_dilate
    use mud_event_forwards, only: FORWARDS, may_go_forwards, backwards, slopes_of_forwards
-   use mud_event_mechanism, only: MECHANISM, mechanism_may_switch, mechanism_function, slopes_of_mechanism
-   use mud_event_opens, only: OPENS, height, slopes_of_opening, opened
+   use mud_event_mechanism, only: MECHANISM, mechanism_may_switch
+   use mud_event_opens, only: OPENS, height
    use mud_event_parts, only: PARTS, end_at_parting
    use mud_event_return, only: RETURNS, return_function, slopes_of_return
    use mud_event_reversal, only: REVERSAL, look_for_reversal, slopes_of_reversal
    use mud_event_turn, only: TURN, place_of
-   use mud_event_unload, only: UNLOAD, may_unload
-   use mud_event_yield, only: YIELD, may_yield, yield_function, slopes_of_yield, yielded
+   use mud_event_unload, only: UNLOAD
+   use mud_event_yield, only: YIELD
    use mud_increment, only: increment_t, void_ratio_at
    use mud_kinds, only: wp
-   use mud_mechanism, only: drive_to_memory
+   use mud_mechanism, only: reaches_memory, short_of_memory, leaves_memory, drive_to_memory, forget_compression
+   use mud_options, only: changes_of_flow
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio
@@ -34,7 +34,7 @@ module mud_event_table
    private
    public :: EVENTS, look_ahead, rate_at_start, rate_at_end, event_function, slopes_of_event, event_happened
 
-   type(event_t), parameter :: NO_EVENT = event_t(NOBODY, NO_RATE, AT, .false., NOTHING, EXACT, EXACT_TRIALS)
+   type(event_t), parameter :: NO_EVENT = event_t(NOBODY, NO_RATE, AT, NOTHING)
    !> In the order of EVENT_*.
    type(event_t), parameter :: EVENTS(EVENT_NONE:EVENT_TURN) = [ &
       NO_EVENT, OPENS, PARTS, CLOSES_AT, BOUNDS, MECHANISM, DILATES, YIELD, UNLOAD, REVERSAL, RETURNS, FORWARDS, &
@@ -66,9 +66,9 @@ contains
       case (EVENT_DILATES)
          possible = may_dilate(par, inc, trial, error)
       case (EVENT_YIELD)
-         possible = may_yield(par, inc, trial, h)
+         possible = reaches_memory(par, inc, trial, h)
       case (EVENT_UNLOAD)
-         possible = may_unload(par, inc, trial, h)
+         possible = leaves_memory(par, inc, trial, h)
       case (EVENT_REVERSAL)
          call look_for_reversal(par, inc, h, trial, counters, possible)
       case (EVENT_RETURN)
@@ -134,13 +134,13 @@ contains
       case (EVENT_FORWARDS)
          f = backwards(w)
       case (EVENT_YIELD)
-         f = yield_function(par, inc, trial, time)
+         f = short_of_memory(par, inc, trial, time)
       case (EVENT_UNLOAD)
          f = drive_to_memory(par, inc, time, w)
       case (EVENT_MECHANISM)
-         f = mechanism_function(trial, w)
+         f = w%iso_drive/trial%w(1)%iso_drive
       case (EVENT_DILATES)
-         f = dilation_function(trial, w)
+         f = w%d/trial%w(1)%d
       case (EVENT_TURN)
          f = projection_on_chord(par, place_of(par, inc, trial, w, y))
       case (EVENT_RETURN)
@@ -166,17 +166,15 @@ contains
       call stress_ratio(par, trial%y(1:6), p, r)
       select case (event)
       case (EVENT_OPENS)
-         slopes = slopes_of_opening(c)
+         slopes = c%y(:, 1) + c%y(:, 2) + c%y(:, 3)
       case (EVENT_PARTS)
          slopes = c%e
       case (EVENT_BOUNDS)
-         slopes = slopes_of_bounds(c)
-      case (EVENT_MECHANISM)
-         slopes = slopes_of_mechanism(c)
+         slopes = c%excess
+      case (EVENT_MECHANISM, EVENT_YIELD)
+         slopes = c%mechanism
       case (EVENT_DILATES)
-         slopes = slopes_of_dilation(w, c)
-      case (EVENT_YIELD)
-         slopes = slopes_of_yield(c)
+         slopes = changes_of_flow(w%d, c%rates)   ! of L D, which are those of D where it is 0, times a number
       case (EVENT_REVERSAL)
          slopes = slopes_of_reversal(par, trial, w, r, c)
       case (EVENT_RETURN)
@@ -196,11 +194,11 @@ contains
 
       select case (event)
       case (EVENT_OPENS)
-         call opened(trial)
+         trial%openings = trial%openings + 1
       case (EVENT_BOUNDS)
-         call bounded(trial)
+         trial%pressed = .true.   ! ordinary rates follow, whichever way the strain leads: suction may move the surface
       case (EVENT_YIELD)
-         call yielded(state)
+         call forget_compression(state)
       end select
    end subroutine event_happened
 end module mud_event_table

@@ -17,7 +17,7 @@ module mud_event_turn
    public :: TURN, place_of
 
    !> The function is projection_on_chord.
-   type(event_t), parameter :: TURN = event_t(NOBODY, RATE_THERE, AT, .false., NOTHING, NEARLY, FEW_TRIALS)
+   type(event_t), parameter :: TURN = event_t(NOBODY, RATE_THERE, AT, NOTHING, NEARLY, FEW_TRIALS)
 contains
    !> The place of the trial's process at a state y and its rate w; units as in both.
    !> docs/theory/memory-rules.md section 3.2.

@@ -135,15 +135,17 @@ contains
       integer, intent(in) :: mode
       real(wp), intent(in) :: time
       real(wp), intent(out) :: loading(6), aside(6), from_centre
-      real(wp) :: nu(6)
+      real(wp) :: nu(6), along
 
+      loading = 0.0_wp
       if (mode == MODE_ELASTIC) then
-         loading = 0.0_wp
          aside = inc%d_strain
          from_centre = volume_from_centre(inc, time)
       else
          nu = direction_at(inc, time)
-         call part(inc, nu, loading, aside)
+         along = ddot(nu, inc%d_strain)
+         if (along > ACROSS*inc%length) loading = along*nu
+         aside = inc%d_strain - loading
          from_centre = inc%rho*trace(nu)
       end if
    end subroutine loading_strain
@@ -164,19 +166,6 @@ contains
 
       volume_from_centre = trace(inc%from_centre) + since_centre(inc, time)*inc%d_v
    end function volume_from_centre
-
-   !> The part of the strain along a direction, if it is forwards, and the rest.
-   pure subroutine part(inc, nu, loading, aside)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: nu(6)
-      real(wp), intent(out) :: loading(6), aside(6)
-      real(wp) :: along
-
-      loading = 0.0_wp
-      along = ddot(nu, inc%d_strain)
-      if (along > ACROSS*inc%length) loading = along*nu
-      aside = inc%d_strain - loading
-   end subroutine part
 
    !> An increment of a point with void ratio e, suction p_c and a strain from_centre of the elastic domain. e and
    !> strain [-], tensor shear, compression positive; p_c and d_pc in the unit of p_atm. A change below NOTHING is none.

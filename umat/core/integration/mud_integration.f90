@@ -2,13 +2,14 @@
 !> State of the integration of an increment on its way.
 module mud_integration
    use mud_event, only: EVENT_NONE
-   use mud_increment, only: increment_t
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_kinds, only: wp
    use mud_rate, only: rate_t
    use mud_registry, only: MAX_INTERRUPTED
-   use mud_state, only: state_t, memory_t, counters_t
+   use mud_retention, only: saturation_t, saturation
+   use mud_state, only: state_t, memory_t, counters_t, guard_count
    use mud_status, only: mud_status_t
-   use mud_trace, only: trace_t, record_substep
+   use mud_trace, only: substep_t, trace_t
    use mud_trial, only: trial_t
    implicit none (type, external)
    private
@@ -47,14 +48,28 @@ module mud_integration
       type(trace_t) :: trace
    end type integration_t
 contains
-   !> Records an attempt h, a share of the increment, with its relative error [-] and the stress to which it led.
+   !> Records an attempt h, a share of the increment, with its relative error [-] and the stress to which it led; one
+   !> without a row is only counted.
    pure subroutine record(h, error, sigma, outcome, it)
       real(wp), intent(in) :: h, error, sigma(6)
       integer, intent(in) :: outcome   !< SUBSTEP_*
       type(integration_t), intent(inout) :: it
+      type(saturation_t) :: sat
+      real(wp) :: time, e, p_c
+      integer :: row
 
-      if (it%traced) call record_substep(it%inc, it%trial, h, error, sigma, outcome, it%jump, &
-                                         it%event /= EVENT_NONE, it%counters, it%trace)
+      if (.not. it%traced) return
+      it%trace%attempts = it%trace%attempts + 1
+      row = it%trace%attempts - it%trace%first + 1
+      if (.not. associated(it%trace%rows) .or. row < 1) return
+      if (row > size(it%trace%rows)) return
+      time = it%trial%time
+      e = void_ratio_at(it%inc, time + h)
+      p_c = suction_at(it%inc, time + h)
+      sat = saturation(it%inc%suction%retention_t, p_c, e)
+      it%trace%rows(row) = substep_t(outcome, it%trial%mode, it%jump, merge(0, 1, it%event == EVENT_NONE), &
+                                     it%counters%rate, it%counters%reset, guard_count(it%counters), &
+                                     it%counters%no_root, time, h, error, e, sat%s_w, p_c, sigma)
    end subroutine record
 
    !> Notes a jump of the memory from `before` to what the state has now, which the trial's first rate makes.
@@ -65,9 +80,7 @@ contains
 
       it%jump = kind
       it%n_jumps = it%n_jumps + 1
-      it%jumps(it%n_jumps)%kind = kind
-      it%jumps(it%n_jumps)%before = before
-      it%jumps(it%n_jumps)%after = it%state%memory
+      it%jumps(it%n_jumps) = jump_t(kind, before, it%state%memory)
       it%trigger = it%trial%w(1)
    end subroutine note_jump
 end module mud_integration

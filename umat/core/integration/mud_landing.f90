@@ -2,7 +2,6 @@
 !> Shortens a substep so that it ends at the event inside it; docs/theory/integration.md section 4.1.
 module mud_landing
    use mud_event, only: EVENT_OPENS, BEFORE, BEYOND
-   use mud_event_opens, only: height_rate
    use mud_event_table, only: EVENTS, event_function, rate_at_start, rate_at_end
    use mud_increment, only: increment_t
    use mud_kinds, only: wp
@@ -69,7 +68,7 @@ contains
       end if
       divided = event == EVENT_OPENS .and. f_low <= AT_START*(f_low - f_high) .and. trial%w(1)%d_p > 0.0_wp
       if (divided) then
-         f_low = height_rate(par, trial%w(1))
+         f_low = trial%w(1)%d_p/par%p_min   ! the rate of the height
          f_high = f_high/h
          zero = max(max(EVENTS(event)%residual, EVENT_TOLERANCE/h)*(f_low - f_high), ROUNDING/h)
       end if

@@ -30,15 +30,15 @@ contains
       type(course_t), intent(in) :: course
       type(cut_t), intent(out) :: cuts(MAX_CUTS)   !< Entries beyond n have no meaning.
       integer, intent(out) :: n
-      real(wp) :: times(MAX_KINKS), turn
+      real(wp) :: times(MAX_KINKS)
       integer :: i, k
 
       n = 1
       cuts(1) = cut_t(CUT_END, 1.0_wp, turns=.false.)
       if (inc%rho > 0.0_wp) call insert(cut_t(CUT_EXIT, inc%exit, turns=.false.), cuts, n)
       if (passes_zero(par, inc)) call insert(cut_t(CUT_NO_SUCTION, -inc%p_c0/inc%d_pc, turns=.false.), cuts, n)
-      call list_kinks(inc%way_t, course, turn, times, k)
-      if (turn < 1.0_wp) call insert(cut_t(CUT_TURN, turn, turns=.true.), cuts, n)
+      if (course%turn < 1.0_wp) call insert(cut_t(CUT_TURN, course%turn, turns=.true.), cuts, n)
+      call list_kinks(inc%way_t, course, times, k)
       do i = 1, k
          call insert(cut_t(CUT_KINK, times(i), turns=.false.), cuts, n)
       end do

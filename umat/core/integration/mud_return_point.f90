@@ -13,7 +13,7 @@ module mud_return_point
    implicit none (type, external)
    private
    public :: place_t, place_at, note_progress, note_farthest, projection_on_chord, interrupt, watched_process, &
-             beyond_target, target_limit, is_limited, resume_process
+             beyond_target, target_limit, resume_process
 
    !> A substep tells the direction of its process where its loading direction is within 45 degrees of the chord from
    !> the memory; without this bound circles about a biased state ratchet sideways [-].
@@ -134,15 +134,6 @@ contains
 
       limit = SQRT_2_3*lode_factor(par%critical, ddot(square(process%direction), process%direction))/SURFACE_MARGIN
    end function target_limit
-
-   !> True where the bounding surface sets the target. m_b is M^b [-]; docs/theory/memory-rules.md section 3.4.
-   pure logical function is_limited(par, process, m_b)
-      type(params_t), intent(in) :: par
-      type(interrupted_t), intent(in) :: process
-      real(wp), intent(in) :: m_b
-
-      is_limited = target_limit(par, process)*m_b < process%target
-   end function is_limited
 
    !> Process k goes on; it and the loops above it leave the stack. The memory becomes the softer one of the present
    !> process and of process k along t. k is from 1 to the depth, not checked; r [-], t of any length.

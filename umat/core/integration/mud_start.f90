@@ -17,7 +17,7 @@ module mud_start
    use mud_tensor, only: trace, is_finite
    implicit none (type, external)
    private
-   public :: initial_state, finish_state, keep_end, has_tension
+   public :: initial_state, finish_state, has_tension
 
 contains
    !> State of a point that starts at a stress, a void ratio and a suction without a past. A mean stress below p_min is
@@ -33,14 +33,13 @@ contains
       type(suction_law_t) :: law
       type(saturation_t) :: sat
       real(wp) :: p, r(6)
+      logical :: credible
 
       call check_stress(par, sigma, p_c, status)
       if (status%code /= MUD_OK) return
-      if (.not. is_finite(e)) then
-         status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
-         return
-      end if
-      if (e <= E_LOWER .or. e >= E_UPPER) then
+      credible = is_finite(e)
+      if (credible) credible = e > E_LOWER .and. e < E_UPPER
+      if (.not. credible) then
          status = fail(MUD_BAD_VOID_RATIO, ON_VOID_RATIO, 0, e, E_LOWER, E_UPPER)
          return
       end if
@@ -73,7 +72,6 @@ contains
       type(state_t), intent(inout) :: state
       type(saturation_t), intent(out) :: sat
       type(bonding_t) :: bond
-      real(wp) :: psi
 
       bond = UNBONDED
       if (is_bonded(law, state%p_c)) then
@@ -83,20 +81,10 @@ contains
          sat = saturation(law%retention_t, state%p_c, state%e)
       end if
       if (state%gap > 0.0_wp .and. is_bonded(law, state%p_c)) bond = bonding(law, state%p_c, soil_void_ratio(state))
-      psi = state_parameter(par%critical, bond%f, soil_void_ratio(state), max(trace(state%sigma)/3.0_wp, par%p_min))
-      call keep_end(law, sat, psi, state)
-   end subroutine finish_state
-
-   !> The state keeps what finish_state finds.
-   pure subroutine keep_end(law, sat, psi, state)
-      type(suction_law_t), intent(in) :: law
-      type(saturation_t), intent(in) :: sat
-      real(wp), intent(in) :: psi
-      type(state_t), intent(inout) :: state
-
+      state%psi = state_parameter(par%critical, bond%f, soil_void_ratio(state), &
+                                  max(trace(state%sigma)/3.0_wp, par%p_min))
       call note_saturation(law%retention_t, sat, state%s_w)
-      state%psi = psi
-   end subroutine keep_end
+   end subroutine finish_state
 
    !> True if a principal stress is negative (tensile): Sylvester's criterion fails. s is an effective stress,
    !> compression positive, in any unit. docs/theory/material.md section 6.5.

@@ -160,9 +160,7 @@ contains
       logical :: noise
 
       t = elastic_rate(it%inc, it%trial%w(1), r)
-      if (par%memory_rule == RULE_RETURN_POINT) then
-         call try_to_return(par, it%event == EVENT_RETURN, r, t, it)
-      end if
+      call try_to_return(par, it%event == EVENT_RETURN, r, t, it)
       if (.not. it%trial%w(1)%loading) return
       if (it%event /= EVENT_FORWARDS) then
          if (it%trial%w(1)%x >= 0.0_wp) return
@@ -181,9 +179,7 @@ contains
       call note_jump(JUMP_REVERSAL, before, it)
       call take_memory(par, it)
       call rate_at_beginning(par, it)
-      if (par%memory_rule == RULE_RETURN_POINT) then
-         call try_to_return(par, .false., r, t, it)
-      end if
+      call try_to_return(par, .false., r, t, it)
    end subroutine apply_memory_rule
 
    !> The rate where a process begins that the trial has taken over, from that of the memory before, which it holds.
@@ -220,6 +216,7 @@ contains
       type(memory_t) :: before
       logical :: reached
 
+      if (par%memory_rule /= RULE_RETURN_POINT) return
       reached = landed
       do
          it%trial%watched = watched_process(it%state%memory, t)

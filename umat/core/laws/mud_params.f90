@@ -12,14 +12,14 @@ module mud_params
       P_K_0, P_G_0, P_N_C, P_LAMBDA, P_ALPHA_CSL, P_N_L, P_THETA, P_M_C, P_C, P_N_B, P_N_D, P_A_0, P_H_0, &
       P_C_H, P_C_Z, P_Z_MAX, P_B_1, P_B_2, P_S_MAX, P_S_MIN, P_P_A, P_OMEGA, P_N_X, P_M_X, P_E_0, P_P_ATM, P_P_MIN, &
       P_BONDING, P_FABRIC, P_ISOTROPIC, P_LODE, P_MEMORY_RULE, P_EPS_HAT, P_J_EXP, P_X_0, P_X_REV, P_CAP_D, P_CAP_H, &
-      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_SHEAR_ORDER, P_HYSTERESIS, &
+      P_CUTOFF, P_SCHEME, P_TOLERANCE, P_H_MIN, P_MAX_SUBSTEPS, P_TANGENT, P_RHO_E, P_HYSTERESIS, &
       P_P_AW, P_N_W, P_M_W, P_B_D, P_B_W, P_C_CHI, P_ZETA_CHI, P_S_CHI, P_C_ELL, P_ELL_MAX, P_P_ELL, P_R_ELL, &
       ISOTROPIC_NONE, ISOTROPIC_REMEMBERS
    use mud_retention, only: retention_t
    use mud_status, only: mud_status_t, fail, MUD_BAD_NPROPS, MUD_BAD_PROPS, ON_PROPS
    use mud_tensor, only: is_finite, all_finite
-   use mud_units, only: stress_unit, bounds_for, minimum_stress, threshold_of_fluidity, LARGEST_STRESS, &
-      LARGEST_SUCTION_STEP, SMALLEST_MINIMUM
+   use mud_units, only: stress_unit, bounds_for, given_or_share, LARGEST_STRESS, LARGEST_SUCTION_STEP, &
+      SMALLEST_MINIMUM, MINIMUM_DIVISOR, THRESHOLD_DIVISOR
    implicit none (type, external)
    private
    public :: params_t, preloading_law_t, fluidity_law_t, read_params, completed, is_length, options_t, options_of, &
@@ -79,7 +79,6 @@ module mud_params
       !> substeps begin, elastic rates replace missing directions, substeps of the minimum size are accepted.
       logical :: guarded
       integer :: scheme, tangent, max_substeps
-      integer :: shear_order   !< Order of shear in umat_ alone: 0 as 12, 13, 23, 1 as 12, 23, 13.
       real(wp) :: tolerance, h_min
       !> Size of a substep of modified Euler over that of one of third order where both have the error that they may
       !> have, and the rates change by their own size within the same strain; docs/theory/integration.md section 2 [-].
@@ -172,7 +171,7 @@ contains
       params%e_0 = props(P_E_0)
       params%p_atm = props(P_P_ATM)
       params%suction%p_atm = params%p_atm
-      params%p_min = minimum_stress(props)
+      params%p_min = given_or_share(props, P_P_MIN, MINIMUM_DIVISOR)
       params%elastic = elastic_t(k_0=props(P_K_0), g_0=props(P_G_0), p_atm=props(P_P_ATM), p_min=params%p_min)
       params%flow = flow_t(a_0=props(P_A_0), c_z=props(P_C_Z), z_max=props(P_Z_MAX), &
                            fabric=real(whole(props(P_FABRIC)), wp))
@@ -195,7 +194,6 @@ contains
       params%max_substeps = whole(props(P_MAX_SUBSTEPS))
       params%tangent = whole(props(P_TANGENT))
       params%rho_e = props(P_RHO_E)
-      params%shear_order = whole(props(P_SHEAR_ORDER))
       params%hysteresis = whole(props(P_HYSTERESIS)) == 1
       params%suction%hysteresis = params%hysteresis
       params%suction%scanning%acts = .false.
@@ -206,7 +204,8 @@ contains
          params%preload = preloading_law_t(c_chi=props(P_C_CHI), zeta_chi=props(P_ZETA_CHI), s_chi=props(P_S_CHI))
       params%fluid = props(P_C_ELL) > 0.0_wp
       if (params%fluid) params%fluidity = fluidity_law_t(c_ell=props(P_C_ELL), ell_max=props(P_ELL_MAX), &
-                                                         p_ell=threshold_of_fluidity(props), r_ell=props(P_R_ELL))
+                                                         p_ell=given_or_share(props, P_P_ELL, THRESHOLD_DIVISOR), &
+                                                         r_ell=props(P_R_ELL))
       params%critical%c4 = params%critical%c**4
       params%critical%lode_bend = SQRT_6*(1.0_wp - params%critical%c4)/(8.0_wp*params%critical%c4)
 

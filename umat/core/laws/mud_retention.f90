@@ -73,7 +73,6 @@ module mud_retention
    end type least_t
 
    real(wp), parameter :: NO_OFFSET = -huge(1.0_wp)
-   type(branch_t), parameter :: NO_BRANCH = branch_t(.true., 0.0_wp, 0.0_wp, NO_OFFSET, 1.0_wp, .false.)
 
    !> The parameters of the main curves, and the branch that is followed where that acts. Those of the wetting curve and
    !> of hysteresis are set with hysteresis; what the user leaves to others has their values.
@@ -124,8 +123,8 @@ module mud_retention
 
    !> Way of S_w through an increment.
    type :: course_t
-      logical :: acts         !< False without hysteresis: the rest has no meaning then.
       real(wp) :: turn        !< Share of the increment after which x no longer rises, 1 if it does not turn [-].
+      logical :: acts         !< False without hysteresis: the rest has no meaning then.
       real(wp) :: log_turn, log_end   !< ln(x/P_a) there and at the end [-].
       type(retention_t) :: material   !< Without a branch.
       type(path_t) :: path    !< Where x began to go the way that it goes: at the start, or at the turn.
@@ -149,14 +148,10 @@ contains
       real(wp), intent(in) :: p_c, e
       type(saturation_t) :: sat
       type(along_t) :: along
-      logical :: limited
 
       if (self%scanning%acts .and. p_c > 0.0_wp) then
-         sat = saturation_t(self%s_max, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp)
-         call follow_branches(self, log_suction(self, p_c, e), along, limited)
-         sat%s_w = along%s_w
-         sat%ds_dpc = along%slope/p_c
-         sat%ds_de = along%slope*self%omega/e
+         along = along_branches(self, log_suction(self, p_c, e))
+         sat = saturation_t(along%s_w, along%slope/p_c, along%slope*self%omega/e, 0.0_wp, 1.0_wp)
       else
          sat = curve_saturation(self, p_c, e)
       end if
@@ -208,8 +203,9 @@ contains
       if (given) status = fail(MUD_BAD_STATE, ON_STATEV, S_SATURATION, preset, 0.0_wp, 0.0_wp)
    end subroutine check_preset
 
-   !> S_w of a point that begins, its turning points and its branch. What was preset, or 0, is kept between the main
-   !> curves, else MUD_BAD_STATE. Without hysteresis nothing is set: S_w follows from suction [kPa] and void ratio [-].
+   !> S_w of a point that begins, its turning points and its branch, at a suction [kPa] and a void ratio [-]. What was
+   !> preset is kept between the main curves; 0: on the main drying curve. Codes of check_saturation. Without hysteresis
+   !> nothing is set: S_w follows from suction and void ratio.
    pure subroutine begin_saturation(self, p_c, e, s_w, turns, branch, status)
       type(retention_t), intent(in) :: self
       real(wp), intent(in) :: p_c, e
@@ -218,10 +214,16 @@ contains
       type(retention_t), intent(inout) :: branch
       type(mud_status_t), intent(inout) :: status
       type(path_t) :: path
+      real(wp) :: bounds(2)
 
       if (.not. self%hysteresis) return
-      call preset_saturation(self, p_c, e, s_w, status)
+      bounds = main_curves(self, log_suction(self, p_c, e))
+      if (is_finite(s_w)) then
+         if (abs(s_w) <= 0.0_wp) s_w = bounds(2)
+      end if
+      call check_saturation(self, p_c, e, s_w, status)
       if (status%code /= MUD_OK) return
+      s_w = max(min(s_w, bounds(2)), bounds(1))
       path = begin_path(self, log_suction(self, p_c, e), s_w)
       turns = path%turns
       branch = branch_of(self, path)
@@ -405,13 +407,12 @@ contains
 
    !> A branch does not cross another one: drying stays above it, wetting below. Where it leaves it both are equal but
    !> for rounding; it is followed there with its own slope, unless that is steeper.
-   pure subroutine limit(self, dries, begins, other, along, limited)
+   pure subroutine limit(self, dries, begins, other, along)
       type(retention_t), intent(in) :: self
       logical, intent(in) :: dries
       logical, intent(in) :: begins   !< Where both are equal it leaves the other one; not where it arrives there.
       type(along_t), intent(in) :: other
       type(along_t), intent(inout) :: along
-      logical, intent(out), optional :: limited   !< The other one is followed.
       real(wp) :: beyond, rounding, s_w
       logical :: acts
 
@@ -423,21 +424,17 @@ contains
       if (beyond > 0.0_wp) s_w = other%s_w
       if (acts) along = other
       along%s_w = s_w
-      if (present(limited)) limited = acts
    end subroutine limit
 
    !> A point of the present branch at ln(x/P_a) [-]: every branch is scaled so that it closes its loop, and limited by
    !> the one that it left, so that closed loops dissipate. docs/theory/material.md section 2.1.1.
-   pure subroutine follow_branches(self, log_x, along, limited)
+   pure function along_branches(self, log_x) result(along)
       type(retention_t), intent(in) :: self
       real(wp), intent(in) :: log_x
-      type(along_t), intent(out) :: along
-      logical, intent(out) :: limited   !< The last branch is not the one that is followed.
-      type(along_t) :: left
+      type(along_t) :: along, left
       integer :: k
 
       along = along_raw_branch(self, self%scanning%branches(1), log_x)
-      limited = .false.
       do k = 2, self%scanning%n
          left = along
          associate (branch => self%scanning%branches(k))
@@ -452,20 +449,18 @@ contains
             end if
             along%curve = along%curve + NEXT_BRANCH*(k - 1)
             call limit(self, branch%dries, &
-                       abs(log_x - branch%log_x) < abs(log_x - self%scanning%branches(k - 1)%log_x), &
-                       left, along, limited)
+                       abs(log_x - branch%log_x) < abs(log_x - self%scanning%branches(k - 1)%log_x), left, along)
          end associate
       end do
-   end subroutine follow_branches
+   end function along_branches
 
    !> Number of the curve that is followed at ln(x/P_a) [-]: another one where S_w has had a kink on the way.
    pure integer function curve_at(self, log_x)
       type(retention_t), intent(in) :: self   !< with a branch
       real(wp), intent(in) :: log_x
       type(along_t) :: along
-      logical :: limited
 
-      call follow_branches(self, log_x, along, limited)
+      along = along_branches(self, log_x)
       curve_at = along%curve
    end function curve_at
 
@@ -478,13 +473,12 @@ contains
       real(wp), intent(in) :: p_c, e
       type(along_t) :: along
       real(wp) :: curvature(3), slope, bend
-      logical :: limited
 
       curvature = 0.0_wp
       if (p_c <= 0.0_wp) return
       slope = sat%ds_dpc*p_c                                    ! dS_w/d ln p*
       if (self%scanning%acts) then
-         call follow_branches(self, log_suction(self, p_c, e), along, limited)
+         along = along_branches(self, log_suction(self, p_c, e))
          bend = along%bend
       else
          bend = bend_of(main_curve_t(0.0_wp, self%n_x, self%m_x), &
@@ -502,13 +496,12 @@ contains
       real(wp), intent(in) :: p_c, e
       type(along_t) :: along
       real(wp) :: change(3), log_x
-      logical :: limited
 
       change = 0.0_wp
       if (.not. self%scanning%moves .or. p_c <= 0.0_wp) return
       log_x = log_suction(self, p_c, e)
-      call follow_branches(self, log_x, along, limited)
-      if (limited) return
+      along = along_branches(self, log_x)
+      if (along%curve < NEXT_BRANCH*(self%scanning%n - 1)) return   ! it is limited by another one
       associate (scanning => self%scanning, branch => self%scanning%branches(self%scanning%n))
          along = along_raw_branch(self, branch, log_x)
          change(1) = (1.0_wp - branch%share)*scanning%s_w_rate + scanning%share_rate*(along%s_w - branch%s_w) &
@@ -535,49 +528,40 @@ contains
    !> The turning points with which a point moves to a suction: a reversal adds the present one, and what is passed on
    !> the way is forgotten with the loop that it closes. The present point is then where the branch that remains was
    !> joined. Nothing happens where it does not move. docs/theory/material.md section 2.1.1.
-   pure subroutine move_along(self, to, path)
+   pure subroutine move_along(self, to, path, passed, n)
       type(retention_t), intent(in) :: self
       real(wp), intent(in) :: to   !< ln(x/P_a), NO_SUCTION where there is none [-].
       type(path_t), intent(inout) :: path
+      !> ln(x/P_a) of the n turning points that are passed, in their order; beyond without meaning [-].
+      real(wp), intent(out), optional :: passed(MAX_TURNS/2)
+      integer, intent(out), optional :: n
+      integer :: closed
+      logical :: dries, moves
 
-      integer :: n
-      real(wp) :: passed(MAX_TURNS/2)
-
-      call list_passed(to, path, passed, n)
-      if (to <= NO_SUCTION) path = path_t(NO_SUCTION, self%s_max, NO_TURNS)
-   end subroutine move_along
-
-   !> Moves a path along and lists the suctions of the n turning points that are passed, in their order; without suction
-   !> they are kept.
-   pure subroutine list_passed(to, path, passed, n)
-      real(wp), intent(in) :: to
-      type(path_t), intent(inout) :: path
-      real(wp), intent(out) :: passed(MAX_TURNS/2)   !< ln(x/P_a); beyond n without meaning [-].
-      integer, intent(out) :: n
-      logical :: dries
-
-      n = 0
-      passed = 0.0_wp
-      if (abs(to - path%log_x) <= 0.0_wp) return
+      closed = 0
+      if (present(passed)) passed = 0.0_wp
+      moves = abs(to - path%log_x) > 0.0_wp
       dries = to > path%log_x
       associate (turns => path%turns)
-         if (dries .neqv. turns%dries) then
+         if (moves .and. (dries .neqv. turns%dries)) then
             if (turns%depth == MAX_TURNS) turns%depth = turns%depth - 2   ! the smallest loop
             turns%depth = turns%depth + 1
             turns%log_x(turns%depth) = path%log_x
             turns%s_w(turns%depth) = path%s_w
             turns%dries = dries
          end if
-         do while (turns%depth >= 2)
+         do while (moves .and. turns%depth >= 2)
             if (merge(to < turns%log_x(turns%depth - 1), to > turns%log_x(turns%depth - 1), dries)) exit
             turns%depth = turns%depth - 2
             path%log_x = turns%log_x(turns%depth + 1)
             path%s_w = turns%s_w(turns%depth + 1)
-            n = n + 1
-            passed(n) = path%log_x
+            closed = closed + 1
+            if (present(passed)) passed(closed) = path%log_x
          end do
       end associate
-   end subroutine list_passed
+      if (present(n)) n = closed
+      if (to <= NO_SUCTION) path = path_t(NO_SUCTION, self%s_max, NO_TURNS)
+   end subroutine move_along
 
    !> The retention along the branch of a point. Closed form of docs/theory/material.md section
    !> 2.1.1; nothing is refused.
@@ -618,26 +602,16 @@ contains
       type(on_main_curve_t) :: at
       real(wp) :: q, growth
 
-      branch = NO_BRANCH
-      branch%dries = dries
-      branch%log_x = log_x
-      branch%s_w = s_w
+      branch = branch_t(dries, log_x, s_w, NO_OFFSET, 1.0_wp, .false.)
       curve = main_curve(self, dries)
       at = on_main_curve(self, curve, log_x)
       if (abs(s_w - at%s_w) <= ON_CURVE*self%s_max) return
       q = power_of(self, dries)
       growth = q*(suction_on_curve(self, curve, s_w) - log_x)   ! offset**q = x**q (exp(growth) - 1)
-      if (growth > epsilon(growth)) branch%log_offset = q*log_x + log_of_growth(growth)
+      if (growth <= epsilon(growth)) return
+      if (growth < LOG_LARGE) growth = 0.5_wp*growth + log(2.0_wp*sinh(0.5_wp*growth))   ! without cancellation
+      branch%log_offset = q*log_x + growth
    end function raw_branch
-
-   !> ln(exp(growth) - 1) without cancellation.
-   pure real(wp) function log_of_growth(growth)
-      real(wp), intent(in) :: growth   !< > 0
-      real(wp), parameter :: LARGE = 200.0_wp
-
-      log_of_growth = growth
-      if (growth < LARGE) log_of_growth = 0.5_wp*growth + log(2.0_wp*sinh(0.5_wp*growth))
-   end function log_of_growth
 
    !> Scales a branch so that it passes the turning point where its loop closes.
    pure subroutine close_loop(self, log_x, s_w, branch)
@@ -721,7 +695,6 @@ contains
       type(retention_t) :: branch
       type(along_t) :: along
       real(wp) :: bounds(2)
-      logical :: limited
 
       cleared = .false.
       if (path%log_x <= NO_SUCTION) then
@@ -734,7 +707,7 @@ contains
       cleared = .not. are_nested(path)
       if (.not. cleared) then
          branch = branch_of(self, path)
-         call follow_branches(branch, path%log_x, along, limited)
+         along = along_branches(branch, path%log_x)
          cleared = abs(along%s_w - path%s_w) > PRESET_ROUNDING*self%s_max
       end if
       if (cleared) path = begin_path(self, path%log_x, path%s_w)
@@ -768,24 +741,6 @@ contains
       wet = on_main_curve(self, main_curve(self, .false.), log_x)
       bounds = [wet%s_w, dry%s_w]
    end function main_curves
-
-   !> S_w of a point that begins at a preset one of STATEV, which must lie between the main curves; 0: on the main
-   !> drying curve. At a suction [kPa] and a void ratio [-]. One that is not finite, or outside by more than 1e-6 S_max,
-   !> is MUD_BAD_STATE; a good one leaves status as it is.
-   pure subroutine preset_saturation(self, p_c, e, s_w, status)
-      type(retention_t), intent(in) :: self
-      real(wp), intent(in) :: p_c, e
-      real(wp), intent(inout) :: s_w
-      type(mud_status_t), intent(inout) :: status
-      real(wp) :: bounds(2)
-
-      bounds = main_curves(self, log_suction(self, p_c, e))
-      if (is_finite(s_w)) then
-         if (abs(s_w) <= 0.0_wp) s_w = bounds(2)
-      end if
-      call check_saturation(self, p_c, e, s_w, status)
-      if (is_finite(s_w)) s_w = max(min(s_w, bounds(2)), bounds(1))
-   end subroutine preset_saturation
 
    !> Checks that S_w of a state with hysteresis lies between the main curves at its suction [kPa] and void ratio [-].
    !> One that is not finite, or outside by more than 1e-6 S_max, is MUD_BAD_STATE; a good one leaves status as it is.
@@ -837,10 +792,7 @@ contains
       real(wp) :: from, to, low, high, step
       integer :: way, i
 
-      least%known = .true.
-      least%n = 0
-      least%log_x = 0.0_wp
-      least%log_offset = 0.0_wp
+      least = least_t(.true., 0, 0.0_wp, 0.0_wp)
       if (abs(self%n_w - self%n_x) <= 0.0_wp .and. abs(self%m_w - self%m_x) <= 0.0_wp) return
       from = WET_END/self%n_w + min(self%log_wetting, 0.0_wp)
       step = (DRY_END - from)/POINTS
@@ -913,6 +865,7 @@ contains
       logical :: lost
 
       course%acts = self%hysteresis
+      course%turn = 1.0_wp
       if (.not. course%acts) return
       course%material = self
       if (.not. course%material%least%known) course%material%least = find_least(course%material)
@@ -969,13 +922,12 @@ contains
       end do
    end function turn_of_suction
 
-   !> Pseudo-times at which S_w has a kink, n of them, and where x turns, 1 if it does not: x passes a turning point, or
-   !> the branch meets a main curve or the branch that it left. All of them depend on x alone, so they are known
-   !> beforehand, behind a turn too. docs/theory/material.md section 2.1.1.
-   pure subroutine list_kinks(way, course, turn, times, n)
+   !> Pseudo-times at which S_w has a kink, n of them: x passes a turning point, or the branch meets a main curve or the
+   !> branch that it left. All of them depend on x alone, so they are known beforehand, behind a turn too.
+   !> docs/theory/material.md section 2.1.1.
+   pure subroutine list_kinks(way, course, times, n)
       type(way_t), intent(in) :: way
       type(course_t), intent(in) :: course
-      real(wp), intent(out) :: turn
       real(wp), intent(out) :: times(MAX_KINKS)   !< Times of the kinks; entries beyond n have no meaning [-].
       integer, intent(out) :: n
       type(retention_t) :: branch
@@ -983,9 +935,7 @@ contains
       type(saturation_t) :: sat
 
       n = 0
-      turn = 1.0_wp
       if (.not. course%acts) return
-      turn = course%turn
       times = 0.0_wp
       path = course%path
       call list_on_way(way, course%material, path, 0.0_wp, course%turn, course%log_turn, times, n)
@@ -1008,7 +958,7 @@ contains
       integer :: i, k
 
       path = start
-      call list_passed(log_to, path, passed, k)
+      call move_along(material, log_to, path, passed, k)
       before = from
       do i = 1, k + 1
          behind = to
@@ -1095,25 +1045,17 @@ contains
       type(way_t), intent(in) :: way
       real(wp), intent(in) :: from, to
       type(retention_t), intent(inout) :: branch
-
-      if (course%acts) call follow(log_at(course%material, way, 0.5_wp*(from + to)), course, branch)
-   end subroutine take_branch
-
-   !> The branch on which x goes to a value [-].
-   pure subroutine follow(log_x, course, branch)
-      real(wp), intent(in) :: log_x
-      type(course_t), intent(in) :: course
-      type(retention_t), intent(out) :: branch
       type(path_t) :: path
 
+      if (.not. course%acts) return
       path = course%path
-      call move_along(course%material, log_x, path)
+      call move_along(course%material, log_at(course%material, way, 0.5_wp*(from + to)), path)
       if (begins_at_turn(course, path)) then
          branch = begin_at_turn(course%material, path, course%slope)
       else
          branch = branch_of(course%material, path)
       end if
-   end subroutine follow
+   end subroutine take_branch
 
    !> True if the present branch begins where the increment turned.
    pure logical function begins_at_turn(course, path)

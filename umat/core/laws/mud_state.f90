@@ -1,6 +1,7 @@
 ! SPDX-License-Identifier: MIT
 !> State of an integration point, and its place in STATEV.
 module mud_state
+   use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: int64
    use mud_kinds, only: wp
    use mud_params, only: options_t
@@ -17,7 +18,7 @@ module mud_state
    implicit none (type, external)
    private
    public :: memory_t, interrupted_t, state_t, counters_t, guard_count, pack_state, unpack_state, &
-             unpack_turns, statev_size, E_LOWER, E_UPPER, E_OPEN
+             unpack_turns, statev_size, check_size, E_LOWER, E_UPPER, E_OPEN
 
    real(wp), parameter :: E_LOWER = 0.01_wp, E_UPPER = 5.0_wp   !< Range of the void ratio without a gap [-].
    real(wp), parameter :: E_OPEN = 1.0e4_wp   !< Largest void ratio with a gap [-].
@@ -103,9 +104,9 @@ module mud_state
       type(turns_t) :: turns
    end type state_t
 
-   !> Counters of what an update did.
-   type :: counters_t
-      integer :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, held_back = 0, &
+   !> Counters of what an update did, as struct mud_report of mud.h has them.
+   type, bind(c) :: counters_t
+      integer(c_int) :: rate = 0, substep = 0, reject = 0, reset = 0, floor = 0, cap_d = 0, cap_h = 0, held_back = 0, &
                  iso_kept = 0, no_root = 0, min_step = 0, open = 0, tensile = 0, cleared = 0
    end type counters_t
 contains
@@ -118,6 +119,16 @@ contains
       if (options%fluid) n = NSTATV
    end function statev_size
 
+   !> Refuses fewer numbers of STATEV than a point has: MUD_BAD_NSTATV. Enough of them leave status as it is.
+   pure subroutine check_size(n, options, status)
+      integer, intent(in) :: n
+      type(options_t), intent(in) :: options
+      type(mud_status_t), intent(inout) :: status
+
+      if (n < statev_size(options)) &
+         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(n, wp), real(statev_size(options), wp), huge(1.0_wp))
+   end subroutine check_size
+
    !> Reads a state from an initialised STATEV; the stress is set by the caller. statev(:) has at least the numbers of
    !> statev_size, else MUD_BAD_NSTATV; units as in mud_registry, tensors with the sign of the core. MUD_BAD_STATE names
    !> the first entry that is not finite, out of its range, or a count that is not whole (its value is then within the
@@ -129,11 +140,8 @@ contains
       type(mud_status_t), intent(out) :: status
       integer :: used
 
-      if (size(statev) < statev_size(options)) then
-         status = fail(MUD_BAD_NSTATV, ON_STATEV, 0, real(size(statev), wp), real(statev_size(options), wp), &
-                       huge(1.0_wp))
-         return
-      end if
+      call check_size(size(statev), options, status)
+      if (status%code /= 0) return
       used = ALWAYS + ENTRY_SIZE*stored_processes(statev)
       ! beyond the interrupted processes there are zeros
       if (.not. (is_sound(statev) .and. all_finite(statev(ALWAYS + 1:used)) .and. &

@@ -6,15 +6,17 @@ module mud_options
       recovered_changes, recovery_changes
    use mud_kinds, only: wp
    use mud_params, only: params_t
-   use mud_preloading, only: preloading_t, preloading_of, preload, log_contraction, note_contraction, &
-      contraction_error, jump_of_contraction, changes_of_contraction, NO_CONTRACTION, Y_LOG_CHI, Y_CONTRACTION
+   use mud_preloading, only: bend_t => preloading_t, preloading_of, bend => preload, log_contraction, &
+      note_contraction, contraction_error, jump_of_contraction, changes_of_contraction, NO_CONTRACTION, Y_LOG_CHI, &
+      Y_CONTRACTION
    use mud_state, only: state_t, memory_t
    use mud_tensor, only: DIRECTIONS
    use mud_vector, only: NY, Y_OPTIONS, Y_SHEAR
    implicit none (type, external)
    private
-   public :: of_options_t, has_numbers, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, &
+   public :: of_options_t, live_numbers, new_numbers, begin_numbers, keep_numbers, error_of_numbers, &
              look_at_numbers, rates_of_numbers, add_volume_rates, move_numbers
+   !> A bend of D and 1/h with (r - r_in):n, the same in every direction, is that of the one option that bends.
    public :: bend_t, bend_of, bend, bend_of_hardening, changes_of_bend
    public :: past_counts, take_past, forget_past, new_past, begin_past, interrupt_past, resume_past
    public :: past_changes_t, no_past_changes, begin_past_changes, keep_past_changes, jump_of_past
@@ -27,18 +29,14 @@ module mud_options
       real(wp) :: chi    !< Contraction of other processes, if so [-].
    end type of_options_t
 
-   !> Bend of D and 1/h with (r - r_in):n, the same in every direction.
-   type :: bend_t
-      type(preloading_t) :: preloading
-   end type bend_t
-
    !> Derivatives of the numbers of the memory beside the vector.
    type :: past_changes_t
       real(wp) :: own(DIRECTIONS)    !< derivatives of the contraction of the present process
       real(wp) :: log_0(DIRECTIONS)  !< derivatives of ln chi' where the substep began
    end type past_changes_t
 contains
-   !> Number of entries of the integrated vector that may change: those of options that are off stand last.
+   !> Number of entries of the integrated vector that may change: those of options that are off stand last. Y_SHEAR
+   !> where no option has any.
    pure integer function live_numbers(par) result(n)
       type(params_t), intent(in) :: par
 
@@ -46,13 +44,6 @@ contains
       if (par%preloading) n = Y_CONTRACTION
       if (par%fluid) n = Y_FLUIDITY
    end function live_numbers
-
-   !> True where an option with numbers of the vector is on.
-   pure logical function has_numbers(par)
-      type(params_t), intent(in) :: par
-
-      has_numbers = par%preloading .or. par%fluid
-   end function has_numbers
 
    !> Numbers of a point without a past [-].
    pure subroutine new_numbers(state)
@@ -207,18 +198,8 @@ contains
       real(wp), intent(in) :: ratio, a_0, b_0
       type(bend_t) :: with_x
 
-      with_x%preloading = preloading_of(par%preload, own%chi, ratio, a_0, b_0)
+      with_x = preloading_of(par%preload, own%chi, ratio, a_0, b_0)
    end function bend_of
-
-   !> Bends D and 1/h at (r - r_in):n = x; the factor on D where it contracts, and its slope d ln/d ln q, q as x**2 [-].
-   pure subroutine bend(with_x, x, d, h_b, factor, slope)
-      type(bend_t), intent(in) :: with_x
-      real(wp), intent(in) :: x
-      real(wp), intent(inout) :: d, h_b
-      real(wp), intent(out) :: factor, slope
-
-      call preload(with_x%preloading, x, d, h_b, factor, slope)
-   end subroutine bend
 
    !> d ln(1/h)/d ln q of that slope [-].
    pure real(wp) function bend_of_hardening(par, slope)

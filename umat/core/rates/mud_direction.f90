@@ -61,8 +61,8 @@ contains
       type(arc_t) :: arc
       type(equation_t) :: eq
       type(angle_t) :: at
-      real(wp) :: n_t(6), q(6), side, start, tau
-      logical :: guarded, found
+      real(wp) :: n_t(6), q(6), side, start, tau, low, high
+      logical :: guarded, found, crossed
 
       n_t = w%t/w%t_norm
       call arc_through(w%r, w%r_moved, w%z, n_t, PARALLEL*max(w%r_norm, 1.0e-3_wp), arc, q)
@@ -84,7 +84,14 @@ contains
             found = at%admissible > 0.0_wp
             if (found) w%several = .not. single_root(par, eq, arc, side, at, w)
          end if
-         if (w%several .or. .not. found) call scan_for_root(par, eq, arc, side, w, tau, at, found)
+         if (w%several .or. .not. found) then
+            ! a first change of sign up to |tau|, a root already found or the end of the arc
+            call scan_arc(par, eq, arc, side, abs(tau), found, low, high, crossed)
+            if (crossed) then
+               call newton(par, eq, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
+               found = at%admissible > 0.0_wp
+            end if
+         end if
          w%n = at%cosine*n_t + at%sine*q
       end if
       w%loading = found
@@ -135,25 +142,6 @@ contains
       sine = min(abs(w%beta)*arc%r_q/w%gamma, 1.0_wp)
       tau = sine/(1.0_wp + sqrt(1.0_wp - sine*sine))
    end function first_guess
-
-   !> Looks for a first change of sign up to |tau|, a root already found or the end of the arc, and for the root there.
-   pure subroutine scan_for_root(par, eq, arc, side, w, tau, at, found)
-      type(params_t), intent(in) :: par
-      type(equation_t), intent(in) :: eq
-      type(arc_t), intent(in) :: arc
-      real(wp), intent(in) :: side
-      type(rate_t), intent(inout) :: w
-      real(wp), intent(inout) :: tau
-      type(angle_t), intent(inout) :: at
-      logical, intent(inout) :: found   !< tau is a root; at the end w and at belong to one
-      real(wp) :: low, high
-      logical :: crossed
-
-      call scan_arc(par, eq, arc, side, abs(tau), found, low, high, crossed)
-      if (.not. crossed) return
-      call newton(par, eq, arc, side, low, high, 0.5_wp*(low + high), w, tau, at)
-      found = at%admissible > 0.0_wp
-   end subroutine scan_for_root
 
    !> Newton's method kept inside a bracket (tau without sign, `side` gives it) whose low end has a negative residual
    !> and whose high end a positive one. Leaves w and at evaluated at the angle it returns.
@@ -289,6 +277,8 @@ contains
       logical, intent(in) :: is_root
       real(wp), intent(out) :: lower, upper       !< tau of the interval's ends, without sign
       logical, intent(out) :: crossed
+      type(moduli_t) :: m
+      type(angle_t) :: at
       real(wp) :: f(-1:POINTS + 2), above(POINTS), fine(POINTS), above_fine(POINTS), step, reach, from
       integer :: i, j, intervals
 
@@ -299,7 +289,8 @@ contains
       if (is_root) intervals = POINTS + 1   ! the known root itself is no crossing
       step = last/intervals
       call residuals(par, eq, arc, side, 0.0_wp, step, f(1:POINTS), above)
-      f(-1:0) = residual_at_t(par, eq, arc, side)
+      call evaluate_direction(par, eq, arc, 0.0_wp, m, at)
+      f(-1:0) = side*at%residual
       f(POINTS + 1:) = merge(0.0_wp, f(POINTS), is_root)
       do i = 0, intervals - 1
          from = i*step
@@ -326,19 +317,6 @@ contains
          return
       end do
    end subroutine scan_arc
-
-   !> The residual at w = 0, in units of its side [kPa].
-   pure real(wp) function residual_at_t(par, eq, arc, side) result(residual)
-      type(params_t), intent(in) :: par
-      type(equation_t), intent(in) :: eq
-      type(arc_t), intent(in) :: arc
-      real(wp), intent(in) :: side
-      type(moduli_t) :: m
-      type(angle_t) :: at
-
-      call evaluate_direction(par, eq, arc, 0.0_wp, m, at)
-      residual = side*at%residual
-   end function residual_at_t
 
    !> The residual in units of its side, and a number that is not negative where it is positive at an admissible angle,
    !> at equal steps of tau from `from` on: the same equation as in evaluate_direction, of all points together.

@@ -16,7 +16,7 @@ module mud_consistent
    use mud_held, only: changes_through_hold
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_inside_changes, only: changes_inside
-   use mud_options, only: has_numbers, live_numbers, add_volume_changes, past_changes_t, no_past_changes, &
+   use mud_options, only: live_numbers, add_volume_changes, past_changes_t, no_past_changes, &
       begin_past_changes, jump_of_past
    use mud_params, only: params_t
    use mud_rate, only: rate_t
@@ -34,7 +34,7 @@ module mud_consistent
    use mud_vector, only: NY, Y_SHEAR
    implicit none (type, external)
    private
-   public :: sensitivity_t, no_sensitivity, begin_stretch, propagate, jump_of_memory, &
+   public :: sensitivity_t, no_sensitivity, propagate, jump_of_memory, &
              changes_of_parting, change_with_size, changes_along, changes_of_ratio, &
              linearise_stage
 
@@ -80,16 +80,6 @@ contains
       sens%settled = depth
       call whole_increment(inc, sens%driving)
    end subroutine no_sensitivity
-
-   !> A phase begins whose end has a pseudo-time that changes by end_shift [-]. Its substeps stretch with it.
-   pure subroutine begin_stretch(inc, end_shift, sens)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: end_shift(DIRECTIONS)
-      type(sensitivity_t), intent(inout) :: sens
-
-      sens%end_shift = end_shift
-      sens%stretch = (end_shift - sens%shift)/(inc%to - inc%from)
-   end subroutine begin_stretch
 
    !> Carries the derivatives through an accepted substep h, a share of inc [-], the last one of a phase or not.
    !> docs/theory/integration.md section 5.3.
@@ -239,7 +229,7 @@ contains
       integer :: i
 
       live = live_numbers(par)
-      if (.not. ends .or. has_numbers(par) .or. trial%relaxation%speed > 0.0_wp) return
+      if (.not. ends .or. live > Y_SHEAR .or. trial%relaxation%speed > 0.0_wp) return
       do i = 2, last_of_solution(inc)
          if (trial%w(i)%loading) then
             if (trial%w(i)%z_n > 0.0_wp) return
@@ -288,32 +278,22 @@ contains
       logical, intent(in) :: moves     !< dh is not zero
       real(wp), intent(in) :: h, dh(DIRECTIONS)
       real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
-      integer :: k
+      real(wp) :: along_one(NY, MAX_STAGES)
+      integer :: j, k
 
       if (moves) then
          do k = 1, live
             rates(:, k, i) = rates(:, k, i) + (trial%rates(k, i)/h)*dh
          end do
       end if
-      if (trial%relaxation%speed > 0.0_wp) call relax_changes(trial, h, i, live, rates)
-   end subroutine finish_stage
-
-   !> The stiff direction of a linearly implicit stage i.
-   pure subroutine relax_changes(trial, h, i, live, rates)
-      type(trial_t), intent(in) :: trial
-      real(wp), intent(in) :: h
-      integer, intent(in) :: i, live
-      real(wp), intent(inout) :: rates(DIRECTIONS, NY, MAX_STAGES)
-      real(wp) :: along_one(NY, MAX_STAGES)
-      integer :: j
-
+      if (trial%relaxation%speed <= 0.0_wp) return
       along_one(live + 1:, 1:i) = 0.0_wp
       do j = 1, DIRECTIONS
          along_one(1:live, 1:i) = rates(j, 1:live, 1:i)
          call relax(trial%relaxation, h, along_one(:, 1:i))
          rates(j, 1:live, i) = along_one(1:live, i)
       end do
-   end subroutine relax_changes
+   end subroutine finish_stage
 
    !> Derivatives of one stage's rates; its pseudo-time changes by dt.
    pure subroutine change_of_stage(par, inc, mode, w, point, time, at_rest, stress_only, dt, r_in, driving, y, rates)
@@ -412,8 +392,8 @@ contains
       type(rate_t), intent(in) :: trigger
       type(trial_t), intent(in) :: trial
       type(sensitivity_t), intent(inout) :: sens
-      real(wp) :: p, r(6), dr(DIRECTIONS, 6), old_r_in(DIRECTIONS, 6), dr_j(6), before_j(6)
-      integer :: j
+      real(wp) :: p, r(6), dr(DIRECTIONS, 6), old_r_in(DIRECTIONS, 6), m
+      integer :: i
 
       sens%at_rest = .false.
       sens%r_in%kind = ANY_TENSORS
@@ -441,29 +421,18 @@ contains
       dr = changes_of_ratio(par, trial%y0(1:6), sens%y)
       old_r_in = sens%r_in%of
       sens%r_in%of = dr
-      ! a fall-back left r_in at r
+      ! of r_in = r + m (r_before - r); a fall-back left r_in at r
       if (jump == JUMP_REVERSAL .and. par%memory_rule == RULE_THRESHOLD .and. any(abs(after%r_in - r) > 0.0_wp)) then
-         do j = 1, DIRECTIONS
-            dr_j = dr(j, :)
-            before_j = sens%r_before(j, :)
-            sens%r_in%of(j, :) = change_of_threshold(par, before, r, dr_j, before_j, sens%y(j, Y_SHEAR))
+         m = interrupted_share(par, before%eps_q_p)
+         do i = 1, 6
+            sens%r_in%of(:, i) = (1.0_wp - m)*dr(:, i) + m*sens%r_before(:, i) &
+               + (share_slope(par, before%eps_q_p)*sens%y(:, Y_SHEAR))*(before%r_before(i) - r(i))
          end do
       end if
       sens%r_before = old_r_in
       if (jump == JUMP_NEW) sens%r_before = dr
       sens%y(:, Y_SHEAR) = 0.0_wp
    end subroutine jump_of_memory
-
-   !> Change of r_in = r + m (r_before - r), rule threshold.
-   pure function change_of_threshold(par, before, r, dr, dr_before, d_eps_q) result(change)
-      type(params_t), intent(in) :: par
-      type(memory_t), intent(in) :: before
-      real(wp), intent(in) :: r(6), dr(6), dr_before(6), d_eps_q
-      real(wp) :: change(6), m
-
-      m = interrupted_share(par, before%eps_q_p)
-      change = (1.0_wp - m)*dr + m*dr_before + (share_slope(par, before%eps_q_p)*d_eps_q)*(before%r_before - r)
-   end function change_of_threshold
 
    !> dm/d eps_q^p of paper eq. (16) [-].
    pure real(wp) function share_slope(par, eps_q_p) result(slope)

@@ -5,12 +5,10 @@ module mud_driving
    use mud_kinds, only: wp
    use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_retention, only: slopes_of_suction
-   use mud_tensor, only: DIRECTIONS, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions
-   use mud_turning, only: changes_of_exit
+   use mud_tensor, only: DIRECTIONS, tensors_t, ZERO_TENSORS, ANY_TENSORS, strain_directions, contracted, ddot
    implicit none (type, external)
    private
-   public :: driving_t, whole_increment, change_of_place, change_of_zero_suction, change_of_turn, change_of_passing, &
-             AT_REST
+   public :: driving_t, whole_increment, change_of_place, change_of_turn, change_of_passing, AT_REST
 
    !> Derivatives of what drives the increment along six engineering strains and the suction at the end of the
    !> increment, side by side. The eighth direction is idle: along it nothing changes.
@@ -44,8 +42,8 @@ contains
       driving%from_centre = NO_CHANGES
       driving%scans = .false.
       if (inc%exit <= 0.0_wp .or. inc%exit >= 1.0_wp) return
-      driving%exit = changes_of_exit(inc%from_centre - inc%exit*inc%d_strain, inc%d_strain, inc%exit, NO_CHANGES, &
-                                     driving%d_strain)
+      ! |from_centre| is that of the sphere
+      driving%exit = -(inc%exit/ddot(inc%from_centre, inc%d_strain))*contracted(driving%d_strain, inc%from_centre)
       do i = 1, 6
          driving%from_centre%of(:, i) = inc%exit*driving%d_strain%of(:, i) + inc%d_strain(i)*driving%exit
       end do
@@ -62,17 +60,6 @@ contains
       de = -(1.0_wp + e)*(time*driving%d_v + inc%d_v*dt)
       dp_c = time*driving%d_pc + inc%d_pc*dt
    end subroutine change_of_place
-
-   !> Changes of the pseudo-time at which suction passes zero [-]. inc%d_pc is not 0, which is not checked.
-   !> docs/theory/integration.md section 1.
-   pure function change_of_zero_suction(inc, time, driving) result(change)
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time
-      type(driving_t), intent(in) :: driving
-      real(wp) :: change(DIRECTIONS)
-
-      change = -(time/inc%d_pc)*driving%d_pc
-   end function change_of_zero_suction
 
    !> Changes of the pseudo-time at which the modified suction p_c e^Omega has its maximum, where
    !> h = dp_c - p_c Omega d_v (1 + e)/e vanishes. time and Omega [-]; derivative of docs/theory/material.md section

@@ -6,14 +6,14 @@ module mud_event_time
    use mud_consistent, only: sensitivity_t, change_with_size, changes_along, changes_of_ratio, linearise_stage
    use mud_cutoff, only: MODE_HELD
    use mud_driving, only: driving_t
-   use mud_event, only: event_changes_t, psi_at, NO_RATE, RATE_THERE, RATE_IF_CLOSED, BY_RATE, BY_DRIVE, &
-      BY_VIRGIN_RATE, BY_SURFACE, BY_MECHANISM, BY_MEMORY
-   use mud_event_closes, only: closing_mode, rate_without_past
-   use mud_event_table, only: EVENTS, slopes_of_event
-   use mud_increment, only: increment_t, void_ratio_at, suction_at, rate_of
+   use mud_event, only: event_changes_t, psi_at, NO_RATE, BY_RATE, BY_DRIVE, BY_VIRGIN_RATE, BY_SURFACE, &
+      BY_MECHANISM, BY_MEMORY
+   use mud_event_closes, only: closing_mode
+   use mud_event_table, only: EVENTS, rate_at_end, slopes_of_event
+   use mud_increment, only: increment_t, void_ratio_at, suction_at
    use mud_kinds, only: wp
    use mud_linearise, only: linearised_t, changes_t
-   use mud_mechanism_changes, only: changes_of_short
+   use mud_mechanism_changes, only: changes_of_measure
    use mud_params, only: params_t
    use mud_rate, only: rate_t
    use mud_rates, only: stress_ratio, p_follows
@@ -54,12 +54,7 @@ contains
       mode = trial%mode
       if (mode == MODE_HELD) mode = closing_mode(inc)
       e = void_ratio_at(inc, time)
-      select case (EVENTS(event)%looks_at)
-      case (RATE_THERE)
-         call rate_of(par, inc, time, trial%y, trial%r_in, mode, w, uncounted)
-      case (RATE_IF_CLOSED)
-         call rate_without_past(par, inc, time, trial%y, w, uncounted)
-      end select
+      call rate_at_end(par, inc, event, trial, h, w, uncounted)
       call change_with_size(par, inc, trial, h, with_size, short_with_size)
       short = sens%short
       short(BY_SIZE) = short_with_size
@@ -117,8 +112,8 @@ contains
             call changes_of_rate(par, w, lin, .false., y, tensors_t(c%r, ANY_TENSORS), strain, centre, changes, &
                                  .false., c%rates)
          case (BY_MEMORY)
-            c%mechanism = changes_of_short(par, inc, time, trial%y(1:6), short, y(:, 1:3), changes%e, changes%p_c, &
-                                           changes%scans, changes%turn)
+            c%mechanism = short + changes_of_measure(par, inc, time, trial%y(1:6), y(:, 1:3), changes%e, changes%p_c, &
+                                                     changes%scans, changes%turn)
          case (BY_SURFACE)
             call change_surface(par, inc, trial, time, changes, c)
          end select

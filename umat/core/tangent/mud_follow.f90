@@ -2,10 +2,11 @@
 !> The derivatives of the consistent tangent follow an update: they read what it left of a phase, a turn of suction, a
 !> substep, and nothing of theirs goes back; docs/theory/integration.md section 5.3.
 module mud_follow
-   use mud_consistent, only: sensitivity_t, begin_stretch, propagate, changes_of_parting, &
+   use mud_consistent, only: sensitivity_t, propagate, changes_of_parting, &
       changes_of_ratio, jump_of_memory
    use mud_cutoff, only: MODE_HELD
-   use mud_driving, only: change_of_zero_suction, change_of_turn, change_of_passing
+   use mud_driving, only: change_of_turn, change_of_passing
+   use mud_event, only: NOTHING
    use mud_event_table, only: EVENTS
    use mud_event_time, only: move_event
    use mud_increment, only: increment_t
@@ -29,7 +30,8 @@ contains
       type(sensitivity_t), intent(inout) :: sens
 
       sens%driving%scans = moves_with_turn(inc%suction%retention_t)
-      call begin_stretch(inc, change_of_cut(par, inc, cut, sens), sens)
+      sens%end_shift = change_of_cut(par, inc, cut, sens)
+      sens%stretch = (sens%end_shift - sens%shift)/(inc%to - inc%from)   ! substeps stretch with the phase
    end subroutine follow_phase
 
    !> Suction has turned: ln x of the turn goes with suction step and volume [1/kPa, -]. docs/theory/material.md section
@@ -55,7 +57,7 @@ contains
       case (CUT_KINK)
          change = change_of_passing(inc, cut%time, par%suction%omega, sens%driving)
       case (CUT_NO_SUCTION)
-         change = change_of_zero_suction(inc, cut%time, sens%driving)
+         change = -(cut%time/inc%d_pc)*sens%driving%d_pc
       case (CUT_EXIT)
          change = sens%driving%exit
       case default
@@ -81,7 +83,7 @@ contains
             if (trial%e <= trial%parts) call changes_of_parting(it%inc, trial, sens)   ! it began without a gap
          end if
          call propagate(par, it%inc, trial, h, it%reached >= it%inc%to, sens)
-         if (EVENTS(it%event)%moves .and. it%reached < it%inc%to) &
+         if (EVENTS(it%event)%depends /= NOTHING .and. it%reached < it%inc%to) &
             call move_event(par, it%inc, it%event, trial, h, sens)
          if (trial%mode /= MODE_HELD) call keep_past_changes(par, trial%y0, trial%y, trial%past, sens%y, sens%past)
          if (trial%drifts) sens%r_in = tensors_t(changes_of_ratio(par, it%state%sigma, sens%y), ANY_TENSORS)

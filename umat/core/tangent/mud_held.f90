@@ -1,7 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Changes of a point held by the tension cut-off; derivatives of docs/theory/material.md section 6.
 module mud_held
-   use mud_bonding, only: suction_law_t
    use mud_bounding, only: psi_of, excess
    use mud_bounding_changes, only: change_of_psi, change_of_excess, change_of_limited
    use mud_cutoff, only: slide, soil_void_ratio
@@ -60,21 +59,44 @@ contains
       type(increment_t), intent(in) :: inc
       type(state_t), intent(in) :: state
       real(wp), intent(out) :: dsig_deps(6, 6), dsig_dpc(6)
-      real(wp) :: unit(6), r(6), e, follows
+      real(wp) :: unit(6), r(6), e, psi
       integer :: j
-      logical :: sliding
+      logical :: at_surface, slides
 
       e = soil_void_ratio(state)
-      follows = merge(0.0_wp, 1.0_wp, state%gap > 0.0_wp)
       r = deviator(state%sigma)/par%p_min
-      sliding = slides(par, inc%suction, e, state%p_c, r, follows, inc%d_strain, inc%d_pc)
+      psi = psi_of(par%critical, inc%suction, e, state%p_c, par%p_min)
+      at_surface = norm(r) > 0.0_wp
+      if (at_surface) at_surface = excess(par%critical, psi, r) >= -ON_SURFACE
+      slides = .false.
+      ! where an elastic rate would leave the surface
+      if (at_surface) slides = change_of_excess(par, psi, r, rate_of_psi(inc%d_strain, inc%d_pc), &
+                                                rate(inc%d_strain, inc%d_pc)) > 0.0_wp
       do j = 1, 6
          unit = 0.0_wp
          unit(j) = merge(1.0_wp, 0.5_wp, j <= 3)
-         dsig_deps(:, j) = par%p_min*held_rate(par, inc%suction, e, state%p_c, r, follows, sliding, unit, 0.0_wp)
+         dsig_deps(:, j) = par%p_min*rate(unit, 0.0_wp)
       end do
       unit = 0.0_wp
-      dsig_dpc = par%p_min*held_rate(par, inc%suction, e, state%p_c, r, follows, sliding, unit, 1.0_wp)
+      dsig_dpc = par%p_min*rate(unit, 1.0_wp)
+   contains
+      !> Rate of the stress ratio for a strain rate and a suction rate, linear in both: elastic, or along the bounding
+      !> surface [-]. docs/theory/material.md section 6.2.
+      pure function rate(d_strain, d_pc)
+         real(wp), intent(in) :: d_strain(6), d_pc
+         real(wp) :: rate(6)
+
+         rate = deviator((2.0_wp*shear_modulus(par%elastic, e, par%p_min)/par%p_min)*d_strain)
+         if (slides) rate = change_of_limited(par, psi, r, rate_of_psi(d_strain, d_pc), rate)
+      end function rate
+
+      !> Rate of the state parameter [-]. Where there is a gap it takes the change of volume.
+      pure real(wp) function rate_of_psi(d_strain, d_pc)
+         real(wp), intent(in) :: d_strain(6), d_pc
+
+         rate_of_psi = change_of_psi(par, inc%suction, e, state%p_c, par%p_min, &
+                                     merge(0.0_wp, -(1.0_wp + e)*trace(d_strain), state%gap > 0.0_wp), d_pc, 0.0_wp)
+      end function rate_of_psi
    end subroutine held_tangent
 
    !> Change of that stress ratio with r0, with the increment's strain, with void ratio and suction at the end and with
@@ -97,40 +119,4 @@ contains
       dpsi = change_of_psi(par, inc%suction, e, p_c, par%p_min, de, dp_c, 0.0_wp, d_turn)
       change = change_of_limited(par, psi, r, dpsi, change)
    end function change_of_slide
-
-   !> True where the stress ratio of a held point is on the bounding surface and an elastic rate would leave it.
-   !> docs/theory/material.md section 6.2, to 1e-12 of the surface.
-   pure logical function slides(par, law, e, p_c, r, follows, d_strain, d_pc)
-      type(params_t), intent(in) :: par
-      type(suction_law_t), intent(in) :: law
-      real(wp), intent(in) :: e, p_c, r(6), d_strain(6), d_pc   !< [-, kPa, -, -, kPa]; e: of the soil
-      real(wp), intent(in) :: follows   !< 0 where the gap takes the change of volume, otherwise 1
-      real(wp) :: psi, dpsi
-
-      slides = .false.
-      if (norm(r) <= 0.0_wp) return
-      psi = psi_of(par%critical, law, e, p_c, par%p_min)
-      if (excess(par%critical, psi, r) < -ON_SURFACE) return
-      dpsi = change_of_psi(par, law, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
-      slides = change_of_excess(par, psi, r, dpsi, held_rate(par, law, e, p_c, r, follows, .false., d_strain, &
-                                                                d_pc)) > 0.0_wp
-   end function slides
-
-   !> Rate of the stress ratio of a held point for a strain rate and a suction rate, linear in both: elastic, or along
-   !> the bounding surface. [-], per unit of pseudo-time. docs/theory/material.md section 6.2,
-   !> docs/theory/integration.md section 5.4.
-   pure function held_rate(par, law, e, p_c, r, follows, sliding, d_strain, d_pc) result(rate)
-      type(params_t), intent(in) :: par
-      type(suction_law_t), intent(in) :: law
-      logical, intent(in) :: sliding
-      real(wp), intent(in) :: e, p_c, r(6), d_strain(6), d_pc   !< [-, kPa, -, -, kPa]; e: of the soil
-      real(wp), intent(in) :: follows   !< 0 where the gap takes the change of volume, otherwise 1
-      real(wp) :: rate(6), psi, dpsi
-
-      rate = deviator((2.0_wp*shear_modulus(par%elastic, e, par%p_min)/par%p_min)*d_strain)
-      if (.not. sliding) return
-      psi = psi_of(par%critical, law, e, p_c, par%p_min)
-      dpsi = change_of_psi(par, law, e, p_c, par%p_min, -follows*(1.0_wp + e)*trace(d_strain), d_pc, 0.0_wp)
-      rate = change_of_limited(par, psi, r, dpsi, rate)
-   end function held_rate
 end module mud_held

@@ -6,7 +6,7 @@ module mud_loading
    use mud_tensor, only: DIRECTIONS, tensors_t, contracted, traces, ddot, trace, UNIT_STRAINS, ANY_TENSORS
    implicit none (type, external)
    private
-   public :: loading_t, whole_strain, no_strain, loading_contracted, loading_traces, add_loading
+   public :: loading_t, whole_strain, loading_contracted, loading_traces, add_loading
 
    !> The rates themselves and the parts of their changes, [-] per unit of pseudo-time.
    type :: loading_t
@@ -37,16 +37,6 @@ contains
       loading%of_centre = 0.0_wp
       loading%along = 0.0_wp
    end subroutine whole_strain
-
-   !> Nothing of a strain rate loads. d_strain [-].
-   pure subroutine no_strain(d_strain, loading)
-      real(wp), intent(in) :: d_strain(6)
-      type(loading_t), intent(inout) :: loading
-
-      call whole_strain(d_strain, loading)
-      loading%part = 0.0_wp
-      loading%of_strain = 0.0_wp
-   end subroutine no_strain
 
    !> Contractions of the changes with a, in its unit. strain and centre are the changes [-] that loading refers to.
    !> Derivative of docs/theory/memory-rules.md section 4.2.

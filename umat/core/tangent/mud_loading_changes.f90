@@ -5,9 +5,9 @@ module mud_loading_changes
    use mud_elastic_domain, only: decay_at
    use mud_increment, only: increment_t, has_elastic_part, volume_from_centre, since_centre
    use mud_kinds, only: wp
-   use mud_loading, only: loading_t, no_strain, whole_strain
+   use mud_loading, only: loading_t, whole_strain
    use mud_rates, only: MODE_ELASTIC
-   use mud_tensor, only: DIRECTIONS, ddot, trace, traces, tensors_t, contracted, UNIT_STRAINS, ANY_TENSORS
+   use mud_tensor, only: DIRECTIONS, ddot, trace, traces, tensors_t, contracted, ANY_TENSORS
    use mud_turning, only: turning_t, turning_at, combination_t, combination_of_turning
    implicit none (type, external)
    private
@@ -32,7 +32,9 @@ contains
          call whole_strain(inc%d_strain, loading)
          return
       else if (mode == MODE_ELASTIC) then
-         call no_strain(inc%d_strain, loading)
+         call whole_strain(inc%d_strain, loading)
+         loading%part = 0.0_wp   ! nothing of it
+         loading%of_strain = 0.0_wp
          loading%beside = .true.
          loading%aside = .true.
          loading%from_centre = volume_from_centre(inc, time)
@@ -81,11 +83,7 @@ contains
       do j = 1, DIRECTIONS
          loading%of_volume(j) = on_d*by%along_d(j) + on_length*by%along_u(j) + turn_rate*dt(j)
       end do
-      if (strain%kind == UNIT_STRAINS) then
-         loading%of_volume(1:3) = loading%of_volume(1:3) + inc%rho*by%of_increment
-      else
-         loading%of_volume = loading%of_volume + (inc%rho*by%of_increment)*traces(strain)
-      end if
+      loading%of_volume = loading%of_volume + (inc%rho*by%of_increment)*traces(strain)
       if (centre%kind == ANY_TENSORS) loading%of_volume = loading%of_volume + (inc%rho*by%of_d)*traces(centre)
    end subroutine changes_of_loading_strain
 

@@ -19,7 +19,7 @@ module mud_mechanism_changes
    use mud_vector, only: NY
    implicit none (type, external)
    private
-   public :: below_t, begin_below, follow_below, end_below, changes_at_memory, changes_of_short
+   public :: below_t, begin_below, follow_below, end_below, changes_at_memory, changes_of_measure
 
    !> The margin along the stages of a substep. What is carried from substep to substep are derivatives of the margin
    !> less its measure, which is a function of the state.
@@ -99,20 +99,9 @@ contains
       short = -changes_of_measure(par, inc, time, state%sigma, y(:, 1:3), de, dp_c, driving%scans, driving%turn)
    end subroutine changes_at_memory
 
-   !> Changes of the margin at a pseudo-time and a stress [kPa], from those of a margin less its measure.
-   pure function changes_of_short(par, inc, time, sigma, short, y, de, dp_c, scans, turn) result(change)
-      type(params_t), intent(in) :: par
-      type(increment_t), intent(in) :: inc
-      real(wp), intent(in) :: time, sigma(6), short(DIRECTIONS), y(DIRECTIONS, 3), de(DIRECTIONS), dp_c(DIRECTIONS)
-      logical, intent(in) :: scans
-      real(wp), intent(in) :: turn(DIRECTIONS)   !< Read where it scans.
-      real(wp) :: change(DIRECTIONS)
-
-      change = short + changes_of_measure(par, inc, time, sigma, y, de, dp_c, scans, turn)
-   end function changes_of_short
-
-   !> Changes of the measure where stress, void ratio and suction change by y(:, 1:3) [kPa], de [-] and dp_c [kPa], and
-   !> a branch of S_w by its turn.
+   !> Changes of the measure at a pseudo-time and a stress [kPa] where stress, void ratio and suction change by
+   !> y(:, 1:3) [kPa], de [-] and dp_c [kPa], and a branch of S_w by its turn. With those of a margin less its measure
+   !> they are those of the margin.
    pure function changes_of_measure(par, inc, time, sigma, y, de, dp_c, scans, turn) result(change)
       type(params_t), intent(in) :: par
       type(increment_t), intent(in) :: inc

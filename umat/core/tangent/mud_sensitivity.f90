@@ -17,7 +17,7 @@ module mud_sensitivity
    use mud_loading, only: loading_contracted, loading_traces, add_loading
    use mud_critical_state, only: dilatancy_slope
    use mud_hardening, only: KINEMATIC_EXPONENT
-   use mud_options, only: has_numbers, changes_of_numbers, softens, changes_of_softening, changes_of_bend
+   use mud_options, only: live_numbers, changes_of_numbers, softens, changes_of_softening, changes_of_bend
    use mud_vector, only: NY, Y_Z, Y_Z_END, Y_SHEAR
    implicit none (type, external)
    private
@@ -59,7 +59,7 @@ contains
       rates(:, Y_Z:) = 0.0_wp
       if (w%loading .and. .not. stress_only) then
          rates(:, Y_SHEAR) = SQRT_2_3*x%dl
-         if (has_numbers(par)) call changes_of_numbers(par, w%l, w%d, w%own, x%dl, x%flow, x%p, y, rates)
+         if (live_numbers(par) > Y_SHEAR) call changes_of_numbers(par, w%l, w%d, w%own, x%dl, x%flow, x%p, y, rates)
          if (par%flow%fabric > 0.0_wp .and. w%d < 0.0_wp) then
             call fill_fabric(par, w, y, strain, centre, changes, x, rates(:, Y_Z:Y_Z_END))
          end if

@@ -1,13 +1,12 @@
 ! SPDX-License-Identifier: MIT
-!> Changes of the elastic domain: of the direction nu, and of where the strain leaves the domain; derivatives of
-!> docs/theory/memory-rules.md section 4.2.
+!> Changes of the direction nu of the elastic domain; derivatives of docs/theory/memory-rules.md section 4.2.
 module mud_turning
    use mud_elastic_domain, only: find_tractrix
    use mud_kinds, only: wp
    use mud_tensor, only: DIRECTIONS, ddot, norm, tensors_t, contracted
    implicit none (type, external)
    private
-   public :: turning_t, turning_at, combination_t, combination_of_turning, changes_of_exit
+   public :: turning_t, turning_at, combination_t, combination_of_turning
 
    !> The direction nu at one pseudo-time.
    type :: turning_t
@@ -26,18 +25,6 @@ module mud_turning
       real(wp), dimension(DIRECTIONS) :: d_on_u, increment_on_d
    end type combination_t
 contains
-   !> Changes of that share with d and the increment. All [-]; the share is that of exit_share, below 1. Derivative of
-   !> docs/theory/memory-rules.md section 4.2.
-   pure function changes_of_exit(d, increment, share, d_changes, increment_changes) result(changes)
-      real(wp), intent(in) :: d(6), increment(6), share
-      type(tensors_t), intent(in) :: d_changes, increment_changes
-      real(wp) :: changes(DIRECTIONS), at_exit(6)
-
-      at_exit = d + share*increment
-      changes = -(contracted(d_changes, at_exit) + share*contracted(increment_changes, at_exit)) &
-                /ddot(at_exit, increment)
-   end function changes_of_exit
-
    !> nu at a pseudo-time, and what its changes share. Arguments as in loading_direction, all [-].
    !> docs/theory/memory-rules.md section 4.2.
    pure function turning_at(rho, d, increment, time) result(turning)
