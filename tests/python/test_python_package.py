@@ -272,6 +272,18 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
         out = mud.BatchResponse(stress=result, statev=begun.statev.copy())
         told = refused(mud.InputError, lambda: sand.update_batch(given, begun.statev, shear, out=out))
         check(f"a result is refused that is {word}", word in told, told)
+    listed, twice, codes = np.arange(4, dtype=np.intc), np.zeros((4, 6)), np.zeros(4, dtype=np.intc)
+    codes.flags.writeable = False
+    for results, word in (
+        ({"status": listed}, "status overlaps list"),
+        ({"status": codes}, "status is read-only"),
+        ({"dsig_dpc": twice, "dsw_deps": twice}, "dsw_deps overlaps dsig_dpc"),
+    ):
+        out = mud.BatchResponse(stress=begun.stress.copy(), statev=begun.statev.copy(), **results)
+        told = refused(
+            mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=listed, out=out)
+        )
+        check(f"refused: {word}", word in told, told)
     wetter = sand.update_batch(begun.stress, begun.statev, shear, 0.5 * suctions, tangent="consistent")
     kept = sand.update_batch(begun.stress, begun.statev, shear)
     check(
