@@ -37,9 +37,18 @@ class HostRun:
 
     @property
     def stages(self) -> list[str]:
-        """Names of the stages that came to their end."""
-        files = sorted(self.folder.glob("nodes_*.csv"), key=lambda path: path.stat().st_mtime)
-        return [path.stem.removeprefix("nodes_") for path in files]
+        """Names of the stages that came to their end, in their order."""
+        names = [path.stem.removeprefix("nodes_") for path in self.folder.glob("nodes_*.csv")]
+        begun = list(self.reactions)
+        written = {name: (self.folder / f"nodes_{name}.csv").stat().st_mtime_ns for name in names}
+        return sorted(names, key=begun.index if set(names) <= set(begun) else written.get)
+
+    @property
+    def reactions(self) -> dict[str, dict[str, np.ndarray]]:
+        """Tables reactions_STAGE by stage, in the order of their times: a copied folder has lost that of its files."""
+        names = [path.stem.removeprefix("reactions_") for path in self.folder.glob("reactions_*.csv")]
+        tables = [(name, self.table(f"reactions_{name}")) for name in names]
+        return dict(sorted(tables, key=lambda item: item[1]["time"][:1].tolist()))
 
     def table(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table of the folder by its name without .csv: histories, ledger, contact, nodes_STAGE, points_STAGE.

@@ -5,6 +5,7 @@ import ctypes
 import inspect
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -24,6 +25,7 @@ import mud.calibration  # noqa: E402
 import tables  # noqa: E402
 from mud import _native  # noqa: E402
 from mud.plots import panels  # noqa: E402
+from mud.study.histories import Histories  # noqa: E402
 
 COMPRESSION = np.array([-100.0, -100.0, -100.0, 0.0, 0.0, 0.0])
 SHEAR = np.array([5e-5, 5e-5, -1e-4, 2e-5, 0.0, 0.0])
@@ -510,6 +512,14 @@ def test_is_the_programs_digit_by_digit():
     run = mud.HostRun(folder)
     check("histories are columns", np.array_equal(run.histories["top.u_z"], [0.0, -0.5]) and run.stages == ["load"])
     check("tables by name", np.array_equal(run.table("nodes_load")["r"], [0.0, 1.0]))
+    copied = work / "copied"  # in which files are as old as the copy, in any order
+    shutil.copytree(folder, copied)
+    for time, stage in ((3.0, "a"), (2.0, "b"), (1.0, "load")):
+        (copied / f"nodes_{stage}.csv").write_text("r,z\n0.0,0.5\n")
+        (copied / f"reactions_{stage}.csv").write_text(f"time,time_of_forces,bottom.force_z\n{time},{time},{time}\n")
+    check("stages are in the order of their times", mud.HostRun(copied).stages == ["load", "b", "a"])
+    forces = Histories(copied).forces["bottom.force_z"]
+    check("so are the forces of all stages", np.array_equal(forces, [[1.0, 2.0, 3.0]] * 2), forces)
     check("a table that is not there", "nodes_load" in refused(mud.InputError, lambda: run.table("nodes")))
     check("a folder without a run", "histories.csv" in refused(mud.InputError, lambda: mud.HostRun(work)))
     import matplotlib

@@ -2,6 +2,7 @@
 """mud_study: errors that it tells are those of closed forms, finished runs are found again, every end has its sentence
 and its exit code."""
 
+import fcntl
 import os
 import re
 import shutil
@@ -189,6 +190,37 @@ def test_forces_are_answers_where_they_are_goals():
         "10 kPa on a circle of 1 m", np.isclose(force["change"], 10 * np.pi, rtol=1e-3) and force["total"] < 1e-6, force
     )
     check("and nothing else", sorted(errors) == ["bottom.force_z", "top.u_z"], errors)
+
+
+def test_a_goal_that_is_zero_by_symmetry_is_no_error():
+    # Rounding alone differs from mesh to mesh, by all that it is.
+    text = BLOCK.format("").replace("fields", "geometry = 'plane_strain' fields").replace("r = 0, 1", "r = -1, 1")
+    text = text.replace("'left'", "'bottom'").replace("r_cells = 2", "r_cells = 4")
+    done, errors, folder = study("accuracy", text, "middle", "--goals", "top.u_r", "bottom.force_r", "top.u_z")
+    check("what moves is told", list(errors) == ["top.u_z"], errors)
+    still = all(f"{goal}: does not change" in done.stdout for goal in ("top.u_r", "bottom.force_r"))
+    check("and what does not", still, done.stdout)
+    study("accuracy", text, "middle", "--goals", "top.u_r", code=3)
+    check("a study without an answer leaves no earlier one", not (folder / "accuracy.csv").exists())
+
+
+def test_two_studies_do_not_share_a_folder():
+    (work / "study_shared").mkdir()
+    with open(work / "study_shared/lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        done, _, _ = study("accuracy", BLOCK.format(""), "shared", code=2)
+    check("the second is refused", "another study is at work" in done.stderr, done.stderr)
+    study("accuracy", BLOCK.format(""), "shared")
+
+
+def test_folders_may_have_any_name():
+    folder = work / "a, b 'ü"
+    folder.mkdir()
+    (folder / "the load.txt").write_text("0 0\n1 1\n")
+    text = BLOCK.format("").replace("'static'", "'quasi_static'").replace("value = 10", "value = 10 history = 'p'")
+    study("effects", text + "&history name = 'p' file = 'the load.txt' /\n", f"{folder.name}/scene 1",
+          "--share", "inf", "--output", str(folder / "out of it"))
+    check("the scene of the run", (folder / "out of it/reduced.nml").exists())
 
 
 def test_finished_runs_are_found_again_and_others_repeated():

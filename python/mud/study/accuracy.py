@@ -139,7 +139,7 @@ class Study:
             if not run.histories.has(goal):
                 there = ", ".join([*run.histories.values, *run.histories.forces])
                 raise Failed(f"there is no answer {goal}; there are {there}", NO_ANSWER)
-        names = [g for g in self.goals if run.histories.change(g) > 0] if self.goals else run.histories.answers()
+        names = [g for g in self.goals if run.histories.moves(g)] if self.goals else run.histories.answers()
         if not names:
             words = "no named point, plate or goal changes in the runs; give the scene a &point where something moves"
             raise Failed(words, NO_ANSWER)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import fcntl
 import hashlib
 import json
 import math
@@ -34,6 +35,7 @@ DEFAULT_TOLERANCE = 1e-3  # of the steps that a stage chooses
 GIVEN_NEWTON = 1e-3  # the same of stages with given steps
 CUT = -signal.SIGPROF  # exit code of a run that has taken the processor time that it may
 WORDS_EVERY = 10.0  # a run that lasts longer says every so many seconds where it is [s]
+_held: dict[pathlib.Path, object] = {}  # locks of folders, until this process ends
 LOCALISED = 0.05  # share of the work that is done where the soil has lost ellipticity [-]
 
 
@@ -134,6 +136,7 @@ class Scene:
     def run(self, fineness, tolerance, newton=0, stress=0, settings=(), keep=False, most=math.inf) -> Run:
         """A finished run: known, found in the folder, or made. `keep`: with the fields that the scene asks for; `most`:
         processor time that it may take [s]."""
+        hold(self.folder)
         key = Key.of(fineness, tolerance, newton, stress, settings)
         if key in self.failed:
             raise self.failed[key]
@@ -258,6 +261,21 @@ class Scene:
             part.write_text(json.dumps(told, indent=1), encoding="utf-8")
             part.replace(folder / "run.json")
         return told
+
+
+def hold(folder: pathlib.Path):
+    """Makes a folder and keeps it for this process: two studies there would delete and find each other's runs."""
+    folder.mkdir(parents=True, exist_ok=True)
+    place = folder.resolve()
+    if place in _held:
+        return
+    lock = open(place / "lock", "w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        lock.close()
+        raise InputError(f"another study is at work in {folder}: wait for it, or name another --output") from None
+    _held[place] = lock
 
 
 def list_of(groups, name: str) -> list:
