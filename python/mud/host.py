@@ -59,12 +59,17 @@ class HostRun:
         if not path.exists():
             there = ", ".join(sorted(p.stem for p in self.folder.glob("*.csv")))
             raise InputError(f"{self.folder} has no table {name}; it has {there}")
-        rows = [cells for _, cells in rows_of(path)]
-        return (
-            {key: _column(values) for key, values in zip(rows[0], zip(*rows[1:]))}
-            if len(rows) > 1
-            else {key: np.empty(0) for key in rows[0]}
-        )
+        lines = rows_of(path)
+        if not lines:
+            raise InputError(f"{path} is empty: the run ended before it wrote it")
+        (_, names), rows = lines[0], lines[1:]
+        for number, cells in rows:
+            if len(cells) != len(names):
+                words = f"{len(cells)} values of {len(names)}; the row was not written to its end"
+                raise InputError(f"{path}:{number}: {words}")
+        if not rows:
+            return {name: np.empty(0) for name in names}
+        return {name: _column(values) for name, values in zip(names, zip(*(cells for _, cells in rows)))}
 
     def _frames(self) -> list[pathlib.Path]:
         # Not whatever lies in the folder: an earlier run may have written more.

@@ -512,6 +512,9 @@ def test_is_the_programs_digit_by_digit():
     run = mud.HostRun(folder)
     check("histories are columns", np.array_equal(run.histories["top.u_z"], [0.0, -0.5]) and run.stages == ["load"])
     check("tables by name", np.array_equal(run.table("nodes_load")["r"], [0.0, 1.0]))
+    for text, words in (("", "is empty"), ("time,dt\n1.0,0.5\n2.0", "ledger.csv:3: 1 values of 2")):
+        (folder / "ledger.csv").write_text(text)
+        check(f"a table that {words}", words in refused(mud.InputError, lambda: run.ledger))
     copied = work / "copied"  # in which files are as old as the copy, in any order
     shutil.copytree(folder, copied)
     for time, stage in ((3.0, "a"), (2.0, "b"), (1.0, "load")):
