@@ -456,6 +456,30 @@ def test_interrupted_studies_go_on():
     check("and goes on", done.stdout.count("found:") >= 4, done.stdout)
 
 
+def test_a_run_does_not_outlive_its_study():
+    # It would write into the folder of the next one.
+    beat = work / "beat"
+    (work / "alive").write_text(f"#!/bin/sh\nfor i in $(seq 200); do echo $i > {beat}; sleep 0.1; done\n")
+    (work / "alive").chmod(0o755)
+    (work / "outlived.nml").write_text(BLOCK.format(""))
+    words = [sys.executable, "-m", "mud.study", "accuracy", work / "outlived.nml", "--output", work / "outlived"]
+    process = subprocess.Popen([*words, "--host", work / "alive"], stdout=subprocess.DEVNULL, env=ENVIRONMENT)
+    while not beat.exists():
+        time.sleep(0.05)
+    with open(work / "outlived/lock", "w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            check("the study holds its folder", False)
+        except BlockingIOError:
+            pass
+    process.kill()
+    process.wait()
+    time.sleep(0.5)
+    last = beat.read_text()
+    time.sleep(0.5)
+    check("the run ends with it", beat.read_text() == last, last)
+
+
 def test_effects_are_kept_and_dropped_as_they_matter():
     for scene in scenes.TRAPS + scenes.EASY:
         name = scene.name.replace(" ", "_").replace(",", "")
