@@ -204,6 +204,12 @@ def test_a_goal_that_is_zero_by_symmetry_is_no_error():
     check("a study without an answer leaves no earlier one", not (folder / "accuracy.csv").exists())
 
 
+def test_what_a_scene_does_not_write_is_no_error():
+    _, sparse, _ = study("accuracy", COLUMN.format("every = 40"), "sparse")
+    _, errors, _ = study("accuracy", COLUMN.format(""), "dense")
+    check("histories are taken at every step", sparse == errors, (sparse, errors))
+
+
 def test_two_studies_do_not_share_a_folder():
     (work / "study_shared").mkdir()
     with open(work / "study_shared/lock", "w") as lock:

@@ -219,7 +219,8 @@ class Scene:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         words = self.words_of(key)
-        command = [self.host, self.path, *words, "--output", folder]
+        # Between steps that are not written a history is not known.
+        command = [self.host, self.path, *words, "--output", folder, "--set", "stage.every=1"]
         if not keep:
             command += ["--set", "stage.fields=0"]
         if self.left <= 0:
