@@ -30,6 +30,7 @@ os.environ["MUD_LIBRARY_DIR"] = str(build)
 import tables  # noqa: E402 (checking knows its folder)
 from mud.host import HostRun  # noqa: E402
 from mud.study import histories  # noqa: E402
+from mud.study.accuracy import Error, Pair, Study  # noqa: E402
 
 sys.path.insert(0, str(root / "verification/studies/effects"))
 import scenes  # noqa: E402
@@ -334,6 +335,17 @@ def test_what_has_no_limit_does_not_converge():
     )
     done, errors, _ = fake("noise", "1 + 0.05 * math.sin(1e3 * math.log(a) + 7 * F) + 0.02 / F", code=22)
     check("the steps", "does not converge" in done.stderr and errors["p.u_z"]["steps"] > 0.01, done.stdout)
+
+
+def test_steps_that_were_made_longer_do_not_stand_still():
+    # Pairs of a column that is filled from above: as meshes err more, the tolerance was loosened twice.
+    one = Study.__new__(Study)
+    one.accuracy = 1e-3
+    errors = ((1.0, 1e-3, 2.8e-4, 4.6e-2), (2.0, 3.2e-3, 5.9e-4, 2.4e-2), (4.0, 1e-2, 4e-3, 9.8e-3))
+    one.pairs = [Pair(f, a, {"top.p_w": Error(1.0, steps, mesh)}, None) for f, a, steps, mesh in errors]
+    check("it goes on", not one._stands_still())
+    one.pairs = [Pair(f, 1e-5 / a, pair.errors, None) for pair, (f, a, *_) in zip(one.pairs, errors)]
+    check("shorter steps that err more are an end", one._stands_still())
 
 
 def test_a_run_that_says_that_shear_localises_ends_the_study():
