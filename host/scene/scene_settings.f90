@@ -84,22 +84,22 @@ contains
       end function is_meant
    end subroutine apply_settings
 
-   !> Puts values between commas in quotes, each, so that a path needs none. A text that has quotes stays.
+   !> Puts values between commas in quotes, each without the blanks around it, so that a path needs none. A text that
+   !> has quotes stays.
    pure function quoted(values) result(text)
       character(*), intent(in) :: values
       character(:), allocatable :: text
-      integer :: i
+      integer :: first, last
 
       text = values
       if (scan(values, '''"') > 0) return
-      text = ''''
-      do i = 1, len(values)
-         if (values(i:i) == ',') then
-            text = text//''','''
-         else if (values(i:i) /= ' ') then
-            text = text//values(i:i)
-         end if
+      text = ''
+      first = 1
+      do while (first <= len(values) + 1)
+         last = first + index(values(first:)//',', ',') - 2
+         text = text//''','''//trim(adjustl(values(first:last)))
+         first = last + 2
       end do
-      text = text//''''
+      text = text(3:)//''''
    end function quoted
 end module scene_settings

@@ -37,9 +37,18 @@ class HostRun:
 
     @property
     def stages(self) -> list[str]:
-        """Names of the stages that came to their end."""
-        files = sorted(self.folder.glob("nodes_*.csv"), key=lambda path: path.stat().st_mtime)
-        return [path.stem.removeprefix("nodes_") for path in files]
+        """Names of the stages that came to their end, in their order."""
+        names = [path.stem.removeprefix("nodes_") for path in self.folder.glob("nodes_*.csv")]
+        begun = list(self.reactions)
+        written = {name: (self.folder / f"nodes_{name}.csv").stat().st_mtime_ns for name in names}
+        return sorted(names, key=begun.index if set(names) <= set(begun) else written.get)
+
+    @property
+    def reactions(self) -> dict[str, dict[str, np.ndarray]]:
+        """Tables reactions_STAGE by stage, in the order of their times: a copied folder has lost that of its files."""
+        names = [path.stem.removeprefix("reactions_") for path in self.folder.glob("reactions_*.csv")]
+        tables = [(name, self.table(f"reactions_{name}")) for name in names]
+        return dict(sorted(tables, key=lambda item: item[1]["time"][:1].tolist()))
 
     def table(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table of the folder by its name without .csv: histories, ledger, contact, nodes_STAGE, points_STAGE.
@@ -50,12 +59,17 @@ class HostRun:
         if not path.exists():
             there = ", ".join(sorted(p.stem for p in self.folder.glob("*.csv")))
             raise InputError(f"{self.folder} has no table {name}; it has {there}")
-        rows = [cells for _, cells in rows_of(path)]
-        return (
-            {key: _column(values) for key, values in zip(rows[0], zip(*rows[1:]))}
-            if len(rows) > 1
-            else {key: np.empty(0) for key in rows[0]}
-        )
+        lines = rows_of(path)
+        if not lines:
+            raise InputError(f"{path} is empty: the run ended before it wrote it")
+        (_, names), rows = lines[0], lines[1:]
+        for number, cells in rows:
+            if len(cells) != len(names):
+                words = f"{len(cells)} values of {len(names)}; the row was not written to its end"
+                raise InputError(f"{path}:{number}: {words}")
+        if not rows:
+            return {name: np.empty(0) for name in names}
+        return {name: _column(values) for name, values in zip(names, zip(*(cells for _, cells in rows)))}
 
     def _frames(self) -> list[pathlib.Path]:
         # Not whatever lies in the folder: an earlier run may have written more.

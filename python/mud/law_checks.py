@@ -649,7 +649,7 @@ def loops(law: Law, at: Setting) -> list[Finding]:
 _LEAPS = {
     "compression": np.array([0, 0, -1.0, 0, 0, 0]),
     "expansion": np.array([1.0, 1, 1, 0, 0, 0]) / 3,
-    "simple shear": np.array([0, 0, 0, 0, 1.0, 0]),
+    "simple shear": np.array([0, 0, 0, 1.0, 0, 0]),  # which four components have, too
 }
 
 

@@ -107,6 +107,8 @@ class Law:
         if self.kind == "udsm":
             if len(self.props) > MOST_PROPS:
                 raise ValueError(f"props has {len(self.props)} values; User_Mod passes at most {MOST_PROPS}")
+            if self.components != 6:
+                raise ValueError(f"components is {self.components}; User_Mod has 6")
             self.shear_order = "kratos"
         self.symbol = self.symbol or SYMBOLS[self.kind]
         if "/" in self.library or pathlib.Path(self.library).exists():

@@ -205,15 +205,22 @@ class Points:
             "dsw_dpc": answer.dsw_dpc,
             "s_w": answer.s_w,
         }
-        for name, array in {**given, **results}.items():
-            if array is not None:
-                need(array, (n, *_SHAPES.get(name, ())), name)
-                setattr(points, name, array.ctypes.data)
-        _apart(given, results)
-        for name, array, size in (("list", listed, None), ("material", material, n), ("status", answer.status, n)):
+        read, written = {}, {}
+        for place, arrays in ((read, given), (written, results)):
+            for name, array in arrays.items():
+                if array is not None:
+                    need(array, (n, *_SHAPES.get(name, ())), name)
+                    place[name] = array
+        for place, name, array, size in (
+            (read, "list", listed, None),
+            (read, "material", material, n),
+            (written, "status", answer.status, n),
+        ):
             if array is not None:
                 need(array, (len(array) if size is None else size,), name, np.intc)
-                setattr(points, name, array.ctypes.data)
+                place[name] = array
+        for name, (first, _) in _apart(read, written).items():
+            setattr(points, name, first)
         if listed is not None:
             wrong = listed[(listed < 0) | (listed >= n)]
             if len(wrong):
@@ -268,17 +275,23 @@ def need(array: np.ndarray, shape: tuple[int, ...], name: str, dtype: type = np.
         raise InputError(f"{name} has the shape {array.shape}, needed is {shape}")
 
 
-def _apart(given: dict[str, np.ndarray | None], results: dict[str, np.ndarray | None]) -> None:
-    """Refuses results that cannot be written, and those that lie across an input: the next point would read them."""
-    for name, array in results.items():
-        if array is None:
-            continue
-        if not array.flags.writeable:
-            raise InputError(f"{name} is read-only: results are written to it")
-        for other, read in given.items():
-            in_place = read is not None and name[:-1] == other[:-1] and array.ctypes.data == read.ctypes.data
-            if read is not None and not in_place and np.may_share_memory(array, read):
-                raise InputError(f"{name} overlaps {other}: results are written to the input itself or apart from it")
+def _apart(read: dict[str, np.ndarray], written: dict[str, np.ndarray]) -> dict[str, tuple[int, int]]:
+    """First and last address of arrays. Refuses results that cannot be written, and those that lie across an input or
+    another result: the next point would read them."""
+    spans: dict[str, tuple[int, int]] = {}
+    for name, array in (*read.items(), *written.items()):
+        first = array.__array_interface__["data"][0]
+        last = first + array.nbytes
+        if name in written:
+            if not array.flags.writeable:
+                raise InputError(f"{name} is read-only: results are written to it")
+            for other, (begin, end) in spans.items():
+                in_place = first == begin and other in read and name[:-1] == other[:-1]
+                if first < end and begin < last and not in_place:
+                    words = "results are written to the input itself or apart from it"
+                    raise InputError(f"{name} overlaps {other}: {words}")
+        spans[name] = first, last
+    return spans
 
 
 def _new_blocks(answer: BatchResponse, n: int) -> None:

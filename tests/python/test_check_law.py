@@ -106,11 +106,15 @@ def test_what_is_no_mistake_of_drot_or_of_the_law_is_told_as_what_it_is():
     check("answers that depend on the directions anyhow are no mistake of DROT",
           done.stdout.startswith("not judged") and "1 not judged" in done.stdout,
           done.stdout + done.stderr)
+    law, words = build / "tests/umats/tresca.so", ("--props=1e4,0.25,20", "--reach=0.05", "--only=large increments")
+    done = run(law, *words, "--components=4")
+    check("a law of four components loses no shear that it cannot get", done.stdout.startswith("pass"), done.stdout)
     (work / "file").write_text("")
     for words, told in (("--nstatv=-1", "it is 0 or more"), ("--stress=nan,1,1", "(--stress) has a value"),
                         ("--props=nan", "(--props) has a value"), ("--suction=inf", "(--suction) has a value"),
+                        ("--kind=udsm --components=4", "User_Mod has 6"),
                         (f"--output={work / 'file'}", "File exists")):
-        done = planted(0, words)
+        done = planted(0, *words.split())
         check(f"refused: {words}", done.returncode == 2 and told in done.stderr and not done.stdout,
               done.stdout + done.stderr)
 

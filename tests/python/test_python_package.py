@@ -5,6 +5,7 @@ import ctypes
 import inspect
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -24,6 +25,7 @@ import mud.calibration  # noqa: E402
 import tables  # noqa: E402
 from mud import _native  # noqa: E402
 from mud.plots import panels  # noqa: E402
+from mud.study.histories import Histories  # noqa: E402
 
 COMPRESSION = np.array([-100.0, -100.0, -100.0, 0.0, 0.0, 0.0])
 SHEAR = np.array([5e-5, 5e-5, -1e-4, 2e-5, 0.0, 0.0])
@@ -272,6 +274,18 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
         out = mud.BatchResponse(stress=result, statev=begun.statev.copy())
         told = refused(mud.InputError, lambda: sand.update_batch(given, begun.statev, shear, out=out))
         check(f"a result is refused that is {word}", word in told, told)
+    listed, twice, codes = np.arange(4, dtype=np.intc), np.zeros((4, 6)), np.zeros(4, dtype=np.intc)
+    codes.flags.writeable = False
+    for results, word in (
+        ({"status": listed}, "status overlaps list"),
+        ({"status": codes}, "status is read-only"),
+        ({"dsig_dpc": twice, "dsw_deps": twice}, "dsw_deps overlaps dsig_dpc"),
+    ):
+        out = mud.BatchResponse(stress=begun.stress.copy(), statev=begun.statev.copy(), **results)
+        told = refused(
+            mud.InputError, lambda: sand.update_batch(begun.stress, begun.statev, shear, points=listed, out=out)
+        )
+        check(f"refused: {word}", word in told, told)
     wetter = sand.update_batch(begun.stress, begun.statev, shear, 0.5 * suctions, tangent="consistent")
     kept = sand.update_batch(begun.stress, begun.statev, shear)
     check(
@@ -498,6 +512,17 @@ def test_is_the_programs_digit_by_digit():
     run = mud.HostRun(folder)
     check("histories are columns", np.array_equal(run.histories["top.u_z"], [0.0, -0.5]) and run.stages == ["load"])
     check("tables by name", np.array_equal(run.table("nodes_load")["r"], [0.0, 1.0]))
+    for text, words in (("", "is empty"), ("time,dt\n1.0,0.5\n2.0", "ledger.csv:3: 1 values of 2")):
+        (folder / "ledger.csv").write_text(text)
+        check(f"a table that {words}", words in refused(mud.InputError, lambda: run.ledger))
+    copied = work / "copied"  # in which files are as old as the copy, in any order
+    shutil.copytree(folder, copied)
+    for time, stage in ((3.0, "a"), (2.0, "b"), (1.0, "load")):
+        (copied / f"nodes_{stage}.csv").write_text("r,z\n0.0,0.5\n")
+        (copied / f"reactions_{stage}.csv").write_text(f"time,time_of_forces,bottom.force_z\n{time},{time},{time}\n")
+    check("stages are in the order of their times", mud.HostRun(copied).stages == ["load", "b", "a"])
+    forces = Histories(copied).forces["bottom.force_z"]
+    check("so are the forces of all stages", np.array_equal(forces, [[1.0, 2.0, 3.0]] * 2), forces)
     check("a table that is not there", "nodes_load" in refused(mud.InputError, lambda: run.table("nodes")))
     check("a folder without a run", "histories.csv" in refused(mud.InputError, lambda: mud.HostRun(work)))
     import matplotlib

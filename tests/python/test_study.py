@@ -2,6 +2,7 @@
 """mud_study: errors that it tells are those of closed forms, finished runs are found again, every end has its sentence
 and its exit code."""
 
+import fcntl
 import os
 import re
 import shutil
@@ -29,6 +30,7 @@ os.environ["MUD_LIBRARY_DIR"] = str(build)
 import tables  # noqa: E402 (checking knows its folder)
 from mud.host import HostRun  # noqa: E402
 from mud.study import histories  # noqa: E402
+from mud.study.accuracy import Error, Pair, Study  # noqa: E402
 
 sys.path.insert(0, str(root / "verification/studies/effects"))
 import scenes  # noqa: E402
@@ -191,6 +193,43 @@ def test_forces_are_answers_where_they_are_goals():
     check("and nothing else", sorted(errors) == ["bottom.force_z", "top.u_z"], errors)
 
 
+def test_a_goal_that_is_zero_by_symmetry_is_no_error():
+    # Rounding alone differs from mesh to mesh, by all that it is.
+    text = BLOCK.format("").replace("fields", "geometry = 'plane_strain' fields").replace("r = 0, 1", "r = -1, 1")
+    text = text.replace("'left'", "'bottom'").replace("r_cells = 2", "r_cells = 4")
+    done, errors, folder = study("accuracy", text, "middle", "--goals", "top.u_r", "bottom.force_r", "top.u_z")
+    check("what moves is told", list(errors) == ["top.u_z"], errors)
+    still = all(f"{goal}: does not change" in done.stdout for goal in ("top.u_r", "bottom.force_r"))
+    check("and what does not", still, done.stdout)
+    study("accuracy", text, "middle", "--goals", "top.u_r", code=3)
+    check("a study without an answer leaves no earlier one", not (folder / "accuracy.csv").exists())
+
+
+def test_what_a_scene_does_not_write_is_no_error():
+    _, sparse, _ = study("accuracy", COLUMN.format("every = 40"), "sparse")
+    _, errors, _ = study("accuracy", COLUMN.format(""), "dense")
+    check("histories are taken at every step", sparse == errors, (sparse, errors))
+
+
+def test_two_studies_do_not_share_a_folder():
+    (work / "study_shared").mkdir()
+    with open(work / "study_shared/lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        done, _, _ = study("accuracy", BLOCK.format(""), "shared", code=2)
+    check("the second is refused", "another study is at work" in done.stderr, done.stderr)
+    study("accuracy", BLOCK.format(""), "shared")
+
+
+def test_folders_may_have_any_name():
+    folder = work / "a, b 'ü"
+    folder.mkdir()
+    (folder / "the load.txt").write_text("0 0\n1 1\n")
+    text = BLOCK.format("").replace("'static'", "'quasi_static'").replace("value = 10", "value = 10 history = 'p'")
+    study("effects", text + "&history name = 'p' file = 'the load.txt' /\n", f"{folder.name}/scene 1",
+          "--share", "inf", "--output", str(folder / "out of it"))
+    check("the scene of the run", (folder / "out of it/reduced.nml").exists())
+
+
 def test_finished_runs_are_found_again_and_others_repeated():
     done, _, folder = study("accuracy", BLOCK.format(""), "again")
     made = done.stdout.count("   run ")
@@ -296,6 +335,17 @@ def test_what_has_no_limit_does_not_converge():
     )
     done, errors, _ = fake("noise", "1 + 0.05 * math.sin(1e3 * math.log(a) + 7 * F) + 0.02 / F", code=22)
     check("the steps", "does not converge" in done.stderr and errors["p.u_z"]["steps"] > 0.01, done.stdout)
+
+
+def test_steps_that_were_made_longer_do_not_stand_still():
+    # Pairs of a column that is filled from above: as meshes err more, the tolerance was loosened twice.
+    one = Study.__new__(Study)
+    one.accuracy = 1e-3
+    errors = ((1.0, 1e-3, 2.8e-4, 4.6e-2), (2.0, 3.2e-3, 5.9e-4, 2.4e-2), (4.0, 1e-2, 4e-3, 9.8e-3))
+    one.pairs = [Pair(f, a, {"top.p_w": Error(1.0, steps, mesh)}, None) for f, a, steps, mesh in errors]
+    check("it goes on", not one._stands_still())
+    one.pairs = [Pair(f, 1e-5 / a, pair.errors, None) for pair, (f, a, *_) in zip(one.pairs, errors)]
+    check("shorter steps that err more are an end", one._stands_still())
 
 
 def test_a_run_that_says_that_shear_localises_ends_the_study():
@@ -422,6 +472,30 @@ def test_interrupted_studies_go_on():
     check("interrupted", process.returncode == 130 and "the same command goes on" in told, (process.returncode, told))
     done = subprocess.run([*words, "--budget", "0.1"], capture_output=True, text=True, env=ENVIRONMENT)
     check("and goes on", done.stdout.count("found:") >= 4, done.stdout)
+
+
+def test_a_run_does_not_outlive_its_study():
+    # It would write into the folder of the next one.
+    beat = work / "beat"
+    (work / "alive").write_text(f"#!/bin/sh\nfor i in $(seq 200); do echo $i > {beat}; sleep 0.1; done\n")
+    (work / "alive").chmod(0o755)
+    (work / "outlived.nml").write_text(BLOCK.format(""))
+    words = [sys.executable, "-m", "mud.study", "accuracy", work / "outlived.nml", "--output", work / "outlived"]
+    process = subprocess.Popen([*words, "--host", work / "alive"], stdout=subprocess.DEVNULL, env=ENVIRONMENT)
+    while not beat.exists():
+        time.sleep(0.05)
+    with open(work / "outlived/lock", "w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            check("the study holds its folder", False)
+        except BlockingIOError:
+            pass
+    process.kill()
+    process.wait()
+    time.sleep(0.5)
+    last = beat.read_text()
+    time.sleep(0.5)
+    check("the run ends with it", beat.read_text() == last, last)
 
 
 def test_effects_are_kept_and_dropped_as_they_matter():

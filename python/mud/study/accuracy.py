@@ -139,7 +139,7 @@ class Study:
             if not run.histories.has(goal):
                 there = ", ".join([*run.histories.values, *run.histories.forces])
                 raise Failed(f"there is no answer {goal}; there are {there}", NO_ANSWER)
-        names = [g for g in self.goals if run.histories.change(g) > 0] if self.goals else run.histories.answers()
+        names = [g for g in self.goals if run.histories.moves(g)] if self.goals else run.histories.answers()
         if not names:
             words = "no named point, plate or goal changes in the runs; give the scene a &point where something moves"
             raise Failed(words, NO_ANSWER)
@@ -259,10 +259,12 @@ class Study:
         if len(totals) > 3 and min(totals[-2:]) > NOISE * min(totals[1:-2]):
             return True
         chain = [p for p in self.pairs if worst in p.errors]
-        for part, kind in (("mesh", "fineness"), ("steps", "tolerance")):
+        for part, finer in (
+            ("mesh", lambda p, q: q.fineness > p.fineness),
+            ("steps", lambda p, q: q.tolerance < p.tolerance),
+        ):
             errors = [getattr(p.errors[worst], part) for p in chain]
-            falls = [a / max(b, 1e-300) for a, b, p, q in zip(errors, errors[1:], chain, chain[1:])
-                     if getattr(p, kind) != getattr(q, kind)]
+            falls = [a / max(b, 1e-300) for a, b, p, q in zip(errors, errors[1:], chain, chain[1:]) if finer(p, q)]
             # Large errors fall late: they may stand still once more.
             needed = 2 if errors[-1] < 0.2 else 3
             if len(falls) >= needed and max(falls[-needed:]) <= NOISE and errors[-1] > self.accuracy / 2:

@@ -14,7 +14,7 @@ from ..errors import InputError
 from .accuracy import EXIT_CODES, MET, REFUSED, Study, share, sum_of, write_table
 from .effects import LEAST_RUN, SHARE, Effects, Silent, write_scene
 from .pictures import accuracy_picture, effects_picture, price_picture
-from .runs import BudgetUsedUp, Failed, Scene, write_csv
+from .runs import BudgetUsedUp, Failed, Scene, hold, write_csv
 
 EXIT_INPUT, EXIT_INTERRUPTED = 2, 130
 LEVELS = (0.1, 0.03, 0.01)  # of price
@@ -72,9 +72,16 @@ def tell(study):
         print(f"mud_study: warning of the finest run: {text}", file=sys.stderr)
 
 
+def forget(folder: pathlib.Path, name: str):
+    """Removes table and picture of an earlier study: one that has no answer leaves none."""
+    for kind in ("csv", "png"):
+        (folder / f"{name}.{kind}").unlink(missing_ok=True)
+
+
 def accuracy(scene: Scene, args, folder=None) -> int:
     """The study `accuracy`: table and picture in the folder of the study, the line."""
     folder = folder or scene.folder
+    forget(folder, "accuracy")
     study = Study(scene, args.accuracy, args.goals)
     study.search()
     tell(study)
@@ -85,6 +92,8 @@ def accuracy(scene: Scene, args, folder=None) -> int:
         scene.say("answer, largest change, total of the error:")
         for name, e in sorted(pair.errors.items(), key=lambda item: -item[1].total):
             scene.say(f"   {name}: {e.change:.4g}, {share(e.total)}")
+        for name in (goal for goal in study.goals if goal not in pair.errors):
+            scene.say(f"   {name}: does not change")
         scene.say(f"results: {scene.folder / pair.run.key.folder}; errors: {folder / 'accuracy.csv'}, accuracy.png")
         scene.say(f"that run: {recipe(scene, pair.run.key)}")
         print(f"{sum_of(pair.errors[pair.worst])}, of {pair.worst}; asked {share(args.accuracy)}: {study.state}; "
@@ -95,6 +104,7 @@ def accuracy(scene: Scene, args, folder=None) -> int:
 
 def price(scene: Scene, args) -> int:
     """The study `price`: pairs for 10, 3 and 1 %; what the budget does not reach is expected from those."""
+    forget(scene.folder, "price")
     study, rows, recipes = Study(scene, LEVELS[0], args.goals), [], []
     for study.accuracy in LEVELS:
         if study.state in ("", MET):
@@ -141,6 +151,7 @@ def effects(scene: Scene, args) -> int:
 
 def reduced(scene: Scene, args) -> pathlib.Path:
     """The scene without what does not matter, as a file; the scene as it stands where no pilot may be run."""
+    forget(scene.folder, "effects")
     study, path, rows = Effects(scene, args.share, args.least_run), scene.folder / "reduced.nml", []
     try:
         rows = study.search()
@@ -181,7 +192,7 @@ def main(words: list[str] | None = None) -> int:
     folder = args.output or pathlib.Path(f"study_{pathlib.Path(args.scene).stem}")
     try:
         scene = Scene(args.scene, folder, args.host, args.budget, args.quiet)
-        folder.mkdir(parents=True, exist_ok=True)
+        hold(folder)
         return {"accuracy": accuracy, "price": price, "effects": effects, "run": run}[args.command](scene, args)
     except (InputError, OSError) as problem:
         print(f"mud_study: {problem}", file=sys.stderr)

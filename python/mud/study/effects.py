@@ -19,6 +19,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..host import HostRun
+from ..namelist import quoted
 from .histories import between
 from .runs import DEFAULT_TOLERANCE, Failed, Run, Scene, files_of, list_of, processor, write_csv
 
@@ -222,7 +223,7 @@ class Effects:
             file = self.runs.folder / f"steps_{hashlib.sha256(times.tobytes()).hexdigest()[:10]}.txt"
             np.savetxt(file, times, fmt="%.17e")
             start += float(stage["duration"])
-            words = {"steps": "given", "step_ends": file.resolve(), "dt": times[0, 1], "dt_growth": 1.0,
+            words = {"steps": "given", "step_ends": quoted(str(file.resolve())), "dt": times[0, 1], "dt_growth": 1.0,
                      "tolerance": stage.get("tolerance", PILOT_NEWTON)}
             keys += [f"stage[{i}].{key}={value}" for key, value in words.items()]
         return out, tuple(keys), self.pilot(out, keys, MOST_TIMES * first.seconds + 1)

@@ -13,7 +13,8 @@ from ..host import HostRun
 FIELDS = {"u_r": 0, "u_z": 0, "p_w": 1, "p_c": 1}  # unknowns of a named point; kinds that are compared with each other
 PLATE = {"u_r": 0, "u_z": 0}
 NO_ANSWER = 1e-2  # an answer that changes less, as a share of the largest of its kind, is none
-ROUNDING = (1e-13, 1e-9)  # a change that is none: of displacements over the size of the mesh [-], of pressures [kPa]
+# A change that is none: of displacements over the size of the mesh [-], of pressures [kPa], of forces over the largest.
+ROUNDING = (1e-13, 1e-9, 1e-10)
 MISSED = 0.1  # what lies between two steps of the rougher run counts from here on, as a share of the largest change
 
 
@@ -33,8 +34,7 @@ class Histories:
             self.forces = {n: (contact["time"], contact[n]) for n in contact if n.endswith(".thrust")}
         else:
             self.forces = {}
-        for path in sorted(run.folder.glob("reactions_*.csv"), key=lambda p: p.stat().st_mtime_ns):
-            table = run.table(path.stem)
+        for table in run.reactions.values():
             for name in table:
                 if name.endswith((".force_r", ".force_z")):
                     self._add_force(name, table["time_of_forces"], table[name])
@@ -67,13 +67,20 @@ class Histories:
         value = self.history(name)[1]
         return float(np.max(np.abs(value - (value[0] if name in self.values else 0.0))))
 
+    def moves(self, name: str) -> bool:
+        """Whether an answer changes by more than what rounding leaves of one that is zero by symmetry."""
+        if name in self.values:
+            least = (ROUNDING[0] * self.size, ROUNDING[1])[FIELDS[name.rsplit(".", 1)[-1]]]
+        else:
+            least = ROUNDING[2] * max(self.change(n) for n in self.forces)
+        return self.change(name) > least
+
     def answers(self) -> list[str]:
         """Unknowns that change, by more than a hundredth of the largest change of their kind."""
         changes = {n: self.change(n) for n in self.values}
         kinds = {n: FIELDS[n.rsplit(".", 1)[-1]] for n in changes}
         largest = [max([x for n, x in changes.items() if kinds[n] == k], default=0.0) for k in (0, 1)]
-        least = [ROUNDING[0] * self.size, ROUNDING[1]]
-        return [n for n, x in changes.items() if x > max(NO_ANSWER * largest[kinds[n]], least[kinds[n]])]
+        return [n for n, x in changes.items() if x > NO_ANSWER * largest[kinds[n]] and self.moves(n)]
 
 
 def _ascending(time, value):

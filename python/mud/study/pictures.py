@@ -38,7 +38,7 @@ def accuracy_picture(path, study):
     for part, mark, dash in (("total", "s", "-"), ("mesh", "^", "--"), ("steps", "o", ":"), ("newton", "x", "-."),
                              ("stress", "+", "-.")):
         values = [getattr(p.errors[worst], part) for p in pairs]
-        if max(values) > NOTHING:
+        if part == "total" or max(values) > NOTHING:
             axes.semilogy([max(x, NOTHING) for x in values], dash, marker=mark, color="k", mfc="w", lw=1,
                           label={"newton": "Newton", "stress": "stress integration"}.get(part, part))
     _level(axes, study.accuracy, "asked")

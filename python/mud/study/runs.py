@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import ctypes
+import fcntl
 import hashlib
 import json
 import math
@@ -34,6 +37,8 @@ DEFAULT_TOLERANCE = 1e-3  # of the steps that a stage chooses
 GIVEN_NEWTON = 1e-3  # the same of stages with given steps
 CUT = -signal.SIGPROF  # exit code of a run that has taken the processor time that it may
 WORDS_EVERY = 10.0  # a run that lasts longer says every so many seconds where it is [s]
+END_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
+_held: dict[pathlib.Path, object] = {}  # locks of folders, until this process and its runs end
 LOCALISED = 0.05  # share of the work that is done where the soil has lost ellipticity [-]
 
 
@@ -134,6 +139,7 @@ class Scene:
     def run(self, fineness, tolerance, newton=0, stress=0, settings=(), keep=False, most=math.inf) -> Run:
         """A finished run: known, found in the folder, or made. `keep`: with the fields that the scene asks for; `most`:
         processor time that it may take [s]."""
+        hold(self.folder)
         key = Key.of(fineness, tolerance, newton, stress, settings)
         if key in self.failed:
             raise self.failed[key]
@@ -213,7 +219,8 @@ class Scene:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         words = self.words_of(key)
-        command = [self.host, self.path, *words, "--output", folder]
+        # Between steps that are not written a history is not known.
+        command = [self.host, self.path, *words, "--output", folder, "--set", "stage.every=1"]
         if not keep:
             command += ["--set", "stage.fields=0"]
         if self.left <= 0:
@@ -224,7 +231,9 @@ class Scene:
         with open(folder / "said.txt", "w", encoding="utf-8") as said, open(folder / "errors.txt", "w") as errors:
             # An interrupt waits until the run is known: one that nobody knows would go on, and write.
             mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
-            process = subprocess.Popen(command, stdout=said, stderr=errors, preexec_fn=_limit(limit, mask))
+            process = subprocess.Popen(
+                command, stdout=said, stderr=errors, preexec_fn=_limit(limit, mask), pass_fds=[hold(self.folder)]
+            )
             try:
                 signal.pthread_sigmask(signal.SIG_SETMASK, mask)
                 while process.poll() is None:
@@ -260,6 +269,23 @@ class Scene:
         return told
 
 
+def hold(folder: pathlib.Path) -> int:
+    """Makes a folder and keeps it for this process and its runs: two studies there would delete and find each other's
+    runs. The number of the open lock."""
+    folder.mkdir(parents=True, exist_ok=True)
+    place = folder.resolve()
+    if place in _held:
+        return _held[place].fileno()
+    lock = open(place / "lock", "w")
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        lock.close()
+        raise InputError(f"another study is at work in {folder}: wait for it, or name another --output") from None
+    _held[place] = lock
+    return lock.fileno()
+
+
 def list_of(groups, name: str) -> list:
     """Groups of a name, in their order."""
     found = groups.get(name, [])
@@ -282,9 +308,12 @@ def write_csv(path, head, rows):
 
 
 def _limit(most, mask):
-    """Sets in a new process what ends a run that takes more processor time [s], and its signals."""
+    """Sets in a new process what ends a run, more processor time [s] or that its study is gone, and its signals."""
+    system = ctypes.CDLL(None)
 
     def begin():
+        with contextlib.suppress(AttributeError):  # elsewhere the lock keeps others out until the run ends
+            system.prctl(END_WITH_PARENT, signal.SIGKILL)
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         if most != math.inf:
             signal.setitimer(signal.ITIMER_PROF, most)
