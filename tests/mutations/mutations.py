@@ -90,7 +90,7 @@ MUTATIONS = [
      (RETENTION, "rise = way%d_pc - max(suction_on(way, time), 0.0_wp)*omega*way%d_v*(1.0_wp + e)/e",
       "rise = way%d_pc - 0.0_wp*omega*e")),
     ("a turn of suction within an increment is not seen",
-     (PHASES, "insert(cut_t(CUT_TURN, course%turn, turns", "insert(cut_t(CUT_TURN, 0.0_wp*turn, turns")),
+     (PHASES, "insert(cut_t(CUT_TURN, course%turn, turns", "insert(cut_t(CUT_TURN, 0.0_wp*course%turn, turns")),
     ("a cut moves with the last one that was found at its place",
      (PHASES, "cuts(i)%turns = cuts(i)%turns .or. cut%turns", "cuts(i) = cut")),
     ("the coupling blocks do not know the turn",
