@@ -87,7 +87,7 @@ class Points:
     total_stress : stresses and their slopes are those of total stress less air pressure, sigma + p_a I.
     lanes : up to eight points side by side, in less time, where processor and material allow it; numbers differ by
         rounding.
-    threads : 0 takes as many as OpenMP would.
+    threads : 0 takes as many as OpenMP would; any other number is cut to one a point and to 1024.
     out : a ``BatchResponse`` whose arrays are written to; None: new arrays.
     """
 
