@@ -17,7 +17,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import InputError
 from ..host import HostRun
 from ..namelist import quoted
 from .histories import between

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
-!> An event inside a substep: a row and a file each, mud_event_NAME, with what is more than an expression of where it
-!> may happen, its function, how this changes, and what follows. Their list is mud_event_table;
+!> An event inside a substep: a row and a file each, mud_event_NAME. The file has its procedures: where it may happen,
+!> its function, how this changes, what follows; what is one expression stands in the list of events, mud_event_table.
 !> docs/theory/integration.md section 4.2.
 module mud_event
    use mud_bounding, only: psi_of
@@ -73,7 +73,7 @@ module mud_event
       logical :: concerns(MODE_ORDINARY:MODE_HELD)   !< Substeps that are ordinary, elastic, held.
       integer :: looks_at                            !< NO_RATE, RATE_THERE, RATE_IF_CLOSED
       integer :: side                                !< Where the substep ends: BEFORE, AT, BEYOND.
-      integer :: depends    !< BY_*: changes with which its function changes, and its time, or NOTHING.
+      integer :: depends    !< BY_*: what its function, and so its time, changes with; NOTHING: the time does not count.
       real(wp) :: residual = EXACT       !< Share of its change below which the function is zero [-].
       integer :: trials = EXACT_TRIALS   !< At most.
    end type event_t

@@ -42,7 +42,7 @@ contains
       driving%from_centre = NO_CHANGES
       driving%scans = .false.
       if (inc%exit <= 0.0_wp .or. inc%exit >= 1.0_wp) return
-      ! |from_centre| is that of the sphere
+      ! where the strain leaves the domain |from_centre| stays rho_e
       driving%exit = -(inc%exit/ddot(inc%from_centre, inc%d_strain))*contracted(driving%d_strain, inc%from_centre)
       do i = 1, 6
          driving%from_centre%of(:, i) = inc%exit*driving%d_strain%of(:, i) + inc%d_strain(i)*driving%exit
