@@ -76,11 +76,11 @@ class Field:
     command = "python3 tests/mutations/run_mutations.py --field --readme"
     judges = ("the suites of limited pressures, elements and friction in `tests/host`, and, where none of them "
               "notices, `verification/run host/stages --quick` and the suites of scenes on gravity, ground, strength, "
-              "dissolved air and free surfaces")
+              "water, dissolved air and free surfaces")
     patterns = ("tests/host/terms/test_run_off.pf", "tests/host/element/test_element_equations.pf",
                 "tests/host/contact/test_contact_penalty.pf", "tests/host/contact/test_contact_interfaces.pf")
     programs, pages = ["mud_host", "umat_tresca"], ["host/stages"]
-    scenes = ["gravity", "stages", "strength", "dissolved_air", "free_surface"]
+    scenes = ["gravity", "stages", "strength", "water", "dissolved_air", "free_surface"]
 
 
 subject = Library
