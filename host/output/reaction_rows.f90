@@ -127,19 +127,19 @@ contains
              (sums(list(2, i), list(1, i)), i=1, size(list, 2))]
    contains
       subroutine add_reactions()
-         integer :: by(run%dofs%n), air_by(size(run%domain%mesh%x, 2)), i, k, group(2)
+         integer :: by(run%dofs%n), air_by(size(run%domain%mesh%x, 2)), at, i, k, group(2)
          real(wp) :: w, a
 
          call prescribing_fixes(run%problem_t, run%state%time, by, air_by)
          sums(:DISPLACEMENTS, :) = forces_of_supports(run%model, by, run%system%reaction)
          associate (dofs => run%dofs, constraint => run%constraint, reaction => run%system%reaction)
             if (.not. run%scheme%has_rates .or. .not. run%domain%with_w) return
-            do i = 1, size(air_by)
-               if (dofs%of(AT_P_W, i) == 0) cycle
-               if (dofs%node(dofs%of(AT_P_W, i)) /= i) cycle
-               w = reaction(dofs%of(AT_P_W, i))
+            do at = 1, dofs%n
+               if (dofs%field(at) /= AT_P_W) cycle
+               i = dofs%node(at)
+               w = reaction(at)
                a = 0.0_wp
-               k = by(dofs%of(AT_P_W, i))
+               k = by(at)
                if (run%domain%with_c) then
                   a = reaction(dofs%of(AT_P_C, i))
                   k = max(k, by(dofs%of(AT_P_C, i)))
@@ -148,14 +148,12 @@ contains
                end if
                group = 0
                if (k > 0) group = run%model%fixes(k)%group
-               associate (at => dofs%of(AT_P_W, i))
-                  if (constraint%limited_by(at) > 0) then
-                     group = constraint%limited_by(at)
-                     if (constraint%fixed(at)) sums(LIMIT, group(1)) = sums(LIMIT, group(1)) + 1
-                     ! What a free node's balance leaves is Newton's, and no flow.
-                     if (.not. constraint%fixed(at)) w = 0.0_wp
-                  end if
-               end associate
+               if (constraint%limited_by(at) > 0) then
+                  group = constraint%limited_by(at)
+                  if (constraint%fixed(at)) sums(LIMIT, group(1)) = sums(LIMIT, group(1)) + 1
+                  ! What a free node's balance leaves is Newton's, and no flow.
+                  if (.not. constraint%fixed(at)) w = 0.0_wp
+               end if
                ! What p_a asks for is air: beside it the water is that of another &fix, or of a drained region.
                if (air_by(i) > 0) group(2) = run%model%fixes(air_by(i))%group
                if (group(1) > 0) sums(OUT_W, group(1)) = sums(OUT_W, group(1)) - w

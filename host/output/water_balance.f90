@@ -140,10 +140,9 @@ contains
 
       ! The residual is that of the sum of both fluids where air is an unknown, of water where air is prescribed.
       associate (scheme => run%scheme, constraint => run%constraint, reaction => run%system%reaction)
-         do node = 1, size(constraint%air)
-            w = run%dofs%of(AT_P_W, node)
-            if (w == 0) cycle
-            if (run%dofs%node(w) /= node) cycle
+         do w = 1, run%dofs%n
+            if (run%dofs%field(w) /= AT_P_W) cycle
+            node = run%dofs%node(w)
             c = run%dofs%of(AT_P_C, node)
             inflow = inflow_at(w)
             outflow = 0.0_wp
