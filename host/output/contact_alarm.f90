@@ -4,7 +4,7 @@
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge, probe_copy
+   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
    use run_state, only: run_t
    use texts, only: short
    use unknown_fields, only: AT_U_Z
@@ -26,11 +26,10 @@ contains
    subroutine warn_of_overlaps(run)
       type(run_t), intent(in) :: run
       type(contacts_t) :: contacts
-      logical :: good
 
       if (size(run%model%contacts) == 0) return
-      call probe_copy(run%system%contacts, run%state%x, contacts, good)
-      if (good) call look_at_overlaps(run, contacts%interfaces)
+      contacts = run%system%contacts
+      if (contacts%probe(run%state%x)) call look_at_overlaps(run, contacts%interfaces)
    end subroutine warn_of_overlaps
 
    subroutine look_at_overlaps(run, interfaces)
@@ -82,20 +81,16 @@ contains
       character(:), allocatable :: name
       integer :: i
 
-      if (size(run%model%contacts) == 0) return
-      select type (contacts => run%system%contacts)
-      type is (contacts_t)
-         do i = 1, size(run%model%contacts)
-            associate (t => contacts%interfaces(i))
-               if (.not. t%acts .or. t%result%unpressed <= ALARMING_DEPTH) cycle
-               name = 'contact '//trim(run%model%contacts(i)%name)
-               call print_warning(name//', time '// &
-                  short(run%next%time)//' s: near ('//short(t%result%unpressed_at(1))//', '// &
-                  short(t%result%unpressed_at(2))//') m the surfaces have penetrated each other by '// &
-                  short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
-                  'gap = ''combined'' in &contact, or refine the slave there.', once='penetration of '//name)
-            end associate
-         end do
-      end select
+      do i = 1, size(run%model%contacts)
+         associate (t => run%system%contacts%interfaces(i))
+            if (.not. t%acts .or. t%result%unpressed <= ALARMING_DEPTH) cycle
+            name = 'contact '//trim(run%model%contacts(i)%name)
+            call print_warning(name//', time '//short(run%next%time)//' s: near ('// &
+               short(t%result%unpressed_at(1))//', '//short(t%result%unpressed_at(2))//') m the surfaces have '// &
+               'penetrated each other by '//short(100*t%result%unpressed)//' % of an edge without pressure, which '// &
+               'its gaps do not see. Set gap = ''combined'' in &contact, or refine the slave there.', &
+               once='penetration of '//name)
+         end associate
+      end do
    end subroutine warn_of_penetration
 end module contact_alarm

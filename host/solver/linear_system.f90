@@ -4,13 +4,13 @@
 module linear_system
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
+   use contact_interfaces, only: contacts_t
    use convergence, only: field_scales, water_scale, water_of, body_scale, is_body
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
    use sparse_factors, only: sparse_t, analyse, factorise, solve_by_factors, SOLVED, INACCURATE
    use sparsity_pattern, only: pattern_t, make_pattern
-   use surface_forces, only: surface_forces_t
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
@@ -26,7 +26,7 @@ module linear_system
 
    type :: system_t
       type(sparse_t) :: sparse
-      class(surface_forces_t), allocatable :: contacts   !< Not allocated: the model has none.
+      type(contacts_t), allocatable :: contacts   !< Not allocated: the model has none.
       integer, allocatable :: extra(:, :)     !< (2, pairs) unknowns that surfaces and springs have brought together so
                                               !< far, each listed both ways round.
       logical :: analysed = .false.

@@ -81,14 +81,12 @@ contains
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      select type (contacts => problem%system%contacts)
-      type is (contacts_t)
-         if (contacts%probe(problem%state%x)) then
-            call seal(self, problem%model, contacts, problem%constraint)
-         else
-            call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//contacts%message()//'.')
-         end if
-      end select
+      if (problem%system%contacts%probe(problem%state%x)) then
+         call seal(self, problem%model, problem%system%contacts, problem%constraint)
+      else
+         call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '// &
+                    problem%system%contacts%message()//'.')
+      end if
    end subroutine before_step
 
    subroutine seal(self, model, contacts, constraint)

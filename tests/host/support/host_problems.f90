@@ -65,11 +65,7 @@ contains
       type(run_t), target, intent(inout) :: run
       type(contacts_t), pointer :: contacts
 
-      contacts => null()
-      select type (forces => run%system%contacts)
-      type is (contacts_t)
-         contacts => forces
-      end select
+      contacts => run%system%contacts
    end function contacts_of
 
    !> A scene from its text, with the fault for the caller.
