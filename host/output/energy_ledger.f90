@@ -62,8 +62,7 @@ contains
       real(wp), allocatable :: change(:, :), held(:, :)
       integer :: e
 
-      associate (domain => run%domain, dofs => run%dofs, old => run%state, new => run%next, &
-                 linear => run%constraint%linear)
+      associate (domain => run%domain, old => run%state, new => run%next)
          ledger%kinetic = kinetic_energy(run, new)
          allocate (change, source=new%x(:DISPLACEMENTS, :) - old%x(:DISPLACEMENTS, :))
          allocate (held, source=moved_by_supports(run, change))
@@ -76,10 +75,10 @@ contains
                if (domain%regions(domain%region_of(e))%drainage == COUPLED) call book_seepage(e, run, ledger)
             end associate
          end do
-         work%damping = work%damping + work_of_linear_forces(linear, .true., dofs, old, new, change)
-         work%skeleton = work%skeleton + work_of_linear_forces(linear, .false., dofs, old, new, change)
-         ledger%supports = ledger%supports + work_of_linear_forces(linear, .true., dofs, old, new, held) &
-                           + work_of_linear_forces(linear, .false., dofs, old, new, held)
+         work%damping = work%damping + work_of_linear_forces(run, .true., change)
+         work%skeleton = work%skeleton + work_of_linear_forces(run, .false., change)
+         ledger%supports = ledger%supports + work_of_linear_forces(run, .true., held) &
+                           + work_of_linear_forces(run, .false., held)
          ledger%skeleton = ledger%skeleton + work%skeleton
          ledger%pores = ledger%pores + work%pores
          ledger%gravity = ledger%gravity + work%gravity

@@ -3,8 +3,8 @@
 module run_cost
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use linear_system, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use run_state, only: run_t
+   use solution, only: T_MATERIAL, T_ASSEMBLY, T_CONTACT, T_FACTORISATION, T_SOLUTION, T_REST
    use texts, only: short, whole
    use unknown_fields, only: AT_P_W, AT_P_C, DISPLACEMENTS
    implicit none (type, external)

@@ -157,8 +157,7 @@ contains
          end do
          mean = mean_outflow(run)
          water%left = water%left + scheme%dt*(mean(1) - mean(2))
-         water%received = water%received &
-            - water_through_dashpots(constraint%linear, run%dofs, constraint%air, run%next%x - run%state%x)
+         water%received = water%received - water_through_dashpots(run)
       end associate
    contains
       !> Finds the mean inflow over the step [m3/s].

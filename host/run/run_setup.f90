@@ -30,7 +30,8 @@ contains
       run%domain => model%domain
       run%dofs => model%dofs
       run%system%reuse = model%reuse_factors
-      call make_pattern(model%dofs%n, model%dofs%element, reshape([integer ::], [2, 0]), run%pattern)
+      allocate (run%system%extra(2, 0))
+      call make_pattern(model%dofs%n, model%dofs%element, run%system%extra, run%pattern)
       call make_assembly(model%domain, model%dofs, run%pattern, run%assembly)
       run%constraint = new_constraint(model)
       call initial_state(model, run%state, fault, run%tension)

@@ -5,11 +5,11 @@ module run_state
    use archive, only: archive_t
    use kinds, only: wp
    use error_norms, only: rate_memory_t, new_memory, exchange_memory
+   use linear_system, only: join_unknowns
    use start_findings, only: tension_t
    use model_types, only: problem_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
    use solution, only: stage_state_t
-   use sparsity_pattern, only: make_pattern
    use step_control, only: controller_t, exchange_controller
    use unknown_fields, only: FIELDS
    implicit none (type, external)
@@ -118,10 +118,7 @@ contains
       run%stage => run%model%stages(run%at%stage)
       run%state%gravity = gravity_at(run%model, run%state%time)
       call copy_state(run%state, run%next)
-      if (.not. allocated(run%system%extra)) return
-      call make_pattern(run%dofs%n, run%dofs%element, run%system%extra, run%pattern)
-      deallocate (run%assembly%values)
-      allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
+      call join_unknowns(run, reshape([integer ::], [2, 0]))
    end subroutine exchange_run
 
    !> Exchanges a control, made by reset_control, with an archive.
@@ -151,7 +148,7 @@ contains
       class(archive_t), intent(inout) :: archive
       integer, allocatable :: pairs(:)
 
-      if (allocated(extra)) pairs = reshape(extra, [size(extra)])
+      pairs = reshape(extra, [size(extra)])
       call archive%exchange_allocatable('pairs', pairs, '-', &
                                         'pairs of unknowns that contacts brought into the matrix')
       if (.not. archive%reading .or. .not. allocated(pairs)) return

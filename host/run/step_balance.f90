@@ -3,9 +3,9 @@
 !> forces of contacts and of the springs of terms. docs/theory/host.md section 9.
 module step_balance
    use kinds, only: wp
-   use linear_system, only: T_CONTACT
    use porous_domain, only: OUTFLOWS
    use run_state, only: run_t
+   use solution, only: T_CONTACT
    use springs, only: add_mean_of_springs
    use unknown_fields, only: AT_P_W, AT_P_C
    use wall_clock, only: clock, add_elapsed
@@ -67,6 +67,6 @@ contains
          end if
          call add_elapsed(run%system%seconds(T_CONTACT), t0)
       end if
-      call add_mean_of_springs(run%constraint%springs, run%dofs, run%scheme, run%state, run%next, run%mean_force)
+      call add_mean_of_springs(run, run%mean_force)
    end subroutine find_mean_forces
 end module step_balance

@@ -8,9 +8,9 @@ module step_failure
    use texts, only: short, whole
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
-   use convergence, only: BY_RESIDUAL, BY_CORRECTION
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
    use run_state, only: run_t
+   use solution, only: BY_RESIDUAL, BY_CORRECTION
    use sparse_factors, only: RCOND_SINGULAR
    use sparsity_pattern, only: entry_of
    use unknown_fields, only: FIELD_NAMES, DISPLACEMENTS

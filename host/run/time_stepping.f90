@@ -3,11 +3,11 @@
 module time_stepping
    use kinds, only: wp
    use faults, only: fault_t
-   use convergence, only: control_t
    use porous_domain, only: copy_state
    use run_observer, only: observers_t, FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, &
                            ENDS
    use run_state, only: run_t, enter_stage
+   use solution, only: control_t
    use sparse_factors, only: release
    use newton_step, only: follow_newton, roughness
    use step_balance, only: balance_step

@@ -3,10 +3,10 @@
 !> the keys; a value outside of the range of its key says that it is not given.
 module scene_parts
    use kinds, only: wp
-   use convergence, only: BY_STAGE
    use faults, only: at_line
    use generalised_alpha, only: analysis_t
    use history_shapes, only: arc_at
+   use solution, only: BY_STAGE
    use texts, only: LENGTH, PATH_LENGTH
    use unknown_fields, only: FIELDS, FIELD_NAMES
    implicit none (type, external)
@@ -65,7 +65,7 @@ module scene_parts
       real(wp), allocatable :: ends(:)               !< Given steps end here, after the start of the stage [s].
       integer :: cuts = 10, max_iterations = 12, every = 1, fields = 0
       real(wp) :: rho_inf = -1.0_wp, tolerance = 1.0e-3_wp, created_energy = 0.01_wp
-      integer :: measure = BY_STAGE                  !< See convergence.
+      integer :: measure = BY_STAGE                  !< See solution.
       logical :: film = .true.                       !< No key says when fields are written.
       logical :: no_predictor = .false., solve_start = .true., zero_displacements = .false.
    end type stage_t

@@ -11,20 +11,13 @@ module convergence
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use prescribed_values, only: constraint_t
+   use solution, only: solution_t, control_t, log_t, BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: control_t, log_t, measure, good_enough, field_scales, water_of, water_scale, body_scale, is_body
-   public :: rounding_in
-   public :: note_stagnation, MOST_IN_VAIN
-   public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
+   public :: measure, good_enough, field_scales, water_of, water_scale, body_scale, is_body, rounding_in
+   public :: note_stagnation, measure_in, linear_tolerance, MOST_IN_VAIN
 
-   integer, parameter :: BY_FORCES = 1       !< The errors of the fields, see above.
-   integer, parameter :: BY_RESIDUAL = 2     !< |R|/|R_0| of all unknowns together, whatever their units, or
-                                             !< |R|/|R_1| where R_1 is larger.
-   integer, parameter :: BY_CORRECTION = 3   !< |dx|/|x| of the worst field.
-   integer, parameter :: BY_CHANGE = 4       !< The errors of the fields against what the step changes.
-   integer, parameter :: BY_STAGE = 5        !< By forces in dynamic stages with contact, by change in others.
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    !> Share of all forces that their sums leave, some hundred roundings. No tolerance of a change asks for less.
    real(wp), parameter :: ROUNDING_OF_SUMS = 1.0e-13_wp
@@ -45,39 +38,6 @@ module convergence
                                                       !< above.
    real(wp), parameter :: NO_FORCE = 1.0e-150_wp   !< [kN] or [m3/s]: nothing is divided by zero.
 
-   type :: control_t
-      real(wp) :: tolerance = 1.0e-3_wp
-      integer :: max_iterations = 12
-      logical :: no_predictor = .false.              !< Predict no change.
-      integer :: measure = BY_FORCES          !< Measure of the error that has to fall below the tolerance.
-      real(wp) :: roughness = 0.0_wp          !< Tolerance of the stress integration, the largest of the regions [-].
-      !> Changes of pressures that the errors of the steps hide; 0: none, as of the displacements [m, kPa].
-      real(wp) :: negligible(FIELDS) = 0.0_wp
-   end type control_t
-
-   !> Log of the iterations of a step.
-   type :: log_t
-      integer :: outcome = 0                  !< One of the outcomes of newton_step; 0: converged.
-      integer :: iterations = 0
-      real(wp) :: error(FIELDS) = 0.0_wp, first_error(FIELDS) = 0.0_wp
-      !> Error of the balance of water, where air is an unknown; that of p_w is no smaller.
-      real(wp) :: water = 0.0_wp
-      real(wp) :: reduction = 0.0_wp          !< |R| over the larger of |R_0| and |R_1|.
-      real(wp) :: correction = 0.0_wp         !< |dx|/|x|, the worst field.
-      real(wp) :: changed(FIELDS) = 0.0_wp    !< Largest |dx| of every field in the last correction [m, kPa].
-      real(wp) :: before(FIELDS) = 0.0_wp     !< Largest |dx| of every field in the correction before it; 0: there was
-                                              !< none.
-      logical :: balanced = .false.           !< The residual begins and ends at the rounding of the forces.
-      integer :: worst_field = 0, worst_unknown = 0
-      real(wp) :: scales(FIELDS) = 0.0_wp     !< Scales that the errors are shares of [kN, m3/s].
-      real(wp) :: forces(FIELDS) = 0.0_wp     !< Magnitudes of all contributions, in the norm of a field [kN, m3/s].
-      integer :: rate_evaluations = 0                   !< Rate evaluations of the material.
-      logical :: refused_guess = .false.      !< The first guess was refused, the step began at the unchanged state.
-      real(wp) :: best_error = huge(1.0_wp)             !< Smallest error so far that was progress [-].
-      integer :: since_best = 0                         !< Iterations since then.
-      real(wp) :: forces_over_scale = 1.0_wp   !< Forces of the worst field over what its error is measured by.
-      logical :: stagnated = .false.                    !< Accepted at what the stress integration lets Newton reach.
-   end type log_t
 contains
    !> Finds the measure of a stage: what BY_STAGE stands for. docs/theory/host.md section 5.1.
    pure integer function measure_in(given, inertia, touching) result(measure)
@@ -163,20 +123,17 @@ contains
 
    !> Finds the scales that the residuals of the fields are small against; rows of prescribed unknowns do not count.
    !> docs/theory/host.md section 5.1. Those of displacements are in [kN], of pressures in [m3/s].
-   pure function field_scales(dofs, constraint, assembly, largest) result(scales)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      type(assembly_t), intent(in) :: assembly
+   pure function field_scales(s, largest) result(scales)
+      class(solution_t), intent(in) :: s
       real(wp), intent(in) :: largest(FIELDS)   !< Largest scale of every field so far.
       real(wp) :: scales(FIELDS)
-      integer :: floor_of(dofs%n), i
+      integer :: floor_of(s%dofs%n), i
 
       ! The rows of p_c hold the floor of the water.
-      floor_of = [(merge(dofs%of(AT_P_W, dofs%node(i)), i, dofs%field(i) == AT_P_C), i=1, dofs%n)]
-      scales = max(norms_of(dofs, constraint, measured_by(assembly)), &
-                   max(HISTORY_SHARE, assembly%rounding_share)*largest, &
-                   norms_of(dofs, constraint, RATE_SHARE*assembly%floor(floor_of)), NO_FORCE)
-      scales(:DISPLACEMENTS) = max(scales(:DISPLACEMENTS), assembly%unresolved)
+      floor_of = [(merge(s%dofs%of(AT_P_W, s%dofs%node(i)), i, s%dofs%field(i) == AT_P_C), i=1, s%dofs%n)]
+      scales = max(norms_of(s, measured_by(s%assembly)), max(HISTORY_SHARE, s%assembly%rounding_share)*largest, &
+                   norms_of(s, RATE_SHARE*s%assembly%floor(floor_of)), NO_FORCE)
+      scales(:DISPLACEMENTS) = max(scales(:DISPLACEMENTS), s%assembly%unresolved)
    end function field_scales
 
    !> Magnitudes that a step is measured by: those of its changes, or of all forces. (unknowns) [kN, m3/s]
@@ -206,39 +163,36 @@ contains
    end function water_of
 
    !> Rows of p_w in which a balance of water is solved: where suction is prescribed the flow of air is not known.
-   pure function has_water(dofs, constraint) result(has)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      logical :: has(dofs%n)
+   pure function has_water(s) result(has)
+      class(solution_t), intent(in) :: s
+      logical :: has(s%dofs%n)
       integer :: i, c
 
-      has = dofs%field == AT_P_W .and. .not. constraint%fixed
-      do i = 1, dofs%n
-         if (.not. has(i) .or. constraint%air(dofs%node(i))) cycle
-         c = dofs%of(AT_P_C, dofs%node(i))
-         if (c > 0) has(i) = .not. constraint%fixed(c)
+      has = s%dofs%field == AT_P_W .and. .not. s%constraint%fixed
+      do i = 1, s%dofs%n
+         if (.not. has(i) .or. s%constraint%air(s%dofs%node(i))) cycle
+         c = s%dofs%of(AT_P_C, s%dofs%node(i))
+         if (c > 0) has(i) = .not. s%constraint%fixed(c)
       end do
    end function has_water
 
    !> Finds the magnitude that the residual of the water is small against [m3/s]. A flow of air that is much larger has
    !> no part in it. docs/theory/host.md section 5.1.
-   pure real(wp) function water_scale(dofs, constraint, assembly, largest) result(scale)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      type(assembly_t), intent(in) :: assembly
+   pure real(wp) function water_scale(s, largest) result(scale)
+      class(solution_t), intent(in) :: s
       real(wp), intent(in) :: largest(FIELDS)   !< As of field_scales.
-      real(wp) :: s, floor
+      real(wp) :: water, floor
       integer :: i, c
 
-      s = 0.0_wp
+      water = 0.0_wp
       floor = 0.0_wp
-      do i = 1, dofs%n
-         if (dofs%field(i) /= AT_P_W .or. constraint%fixed(i)) cycle
-         s = s + assembly%water(i)**2
-         c = dofs%of(AT_P_C, dofs%node(i))
-         floor = floor + (RATE_SHARE*assembly%floor(merge(c, i, c > 0)))**2
+      do i = 1, s%dofs%n
+         if (s%dofs%field(i) /= AT_P_W .or. s%constraint%fixed(i)) cycle
+         water = water + s%assembly%water(i)**2
+         c = s%dofs%of(AT_P_C, s%dofs%node(i))
+         floor = floor + (RATE_SHARE*s%assembly%floor(merge(c, i, c > 0)))**2
       end do
-      scale = max(sqrt(s), sqrt(floor), HISTORY_SHARE*largest(AT_P_W), NO_FORCE)
+      scale = max(sqrt(water), sqrt(floor), HISTORY_SHARE*largest(AT_P_W), NO_FORCE)
    end function water_scale
 
    !> A rigid body that moves is measured by the forces on it: in the sum of its field it would be lost. i: an unknown.
@@ -252,31 +206,31 @@ contains
    !> Finds the force [kN] that the residual of rigid body i is small against. docs/theory/host.md section 5.1. The
    !> unknowns of a body are measured by the largest force of them: their units are one, and what does not load one of
    !> them is in balance with what loads the others.
-   pure real(wp) function body_scale(constraint, assembly, largest, i)
-      type(constraint_t), intent(in) :: constraint
-      type(assembly_t), intent(in) :: assembly
+   pure real(wp) function body_scale(s, largest, i)
+      class(solution_t), intent(in) :: s
       real(wp), intent(in) :: largest(FIELDS)   !< Largest scale of every field so far, as of field_scales.
       integer, intent(in) :: i
 
-      body_scale = max(maxval(measured_by(assembly), mask=constraint%body == constraint%body(i)), &
-                       max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), NO_FORCE, assembly%unresolved)
+      associate (assembly => s%assembly, body => s%constraint%body)
+         body_scale = max(maxval(measured_by(assembly), mask=body == body(i)), &
+                          max(HISTORY_SHARE, assembly%rounding_share)*largest(AT_U_Z), NO_FORCE, assembly%unresolved)
+      end associate
    end function body_scale
 
    !> Norms over the unknowns that are free, displacements together: a component without forces is no measure of its
    !> own.
-   pure function norms_of(dofs, constraint, values) result(norms)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
+   pure function norms_of(s, values) result(norms)
+      class(solution_t), intent(in) :: s
       real(wp), intent(in) :: values(:)   !< (unknowns)
       real(wp) :: norms(FIELDS)
       integer :: i, f
 
       norms = 0.0_wp
-      do i = 1, dofs%n
-         f = dofs%field(i)
-         if (constraint%fixed(i)) cycle
+      do i = 1, s%dofs%n
+         f = s%dofs%field(i)
+         if (s%constraint%fixed(i)) cycle
          if (f == AT_P_C) then
-            if (constraint%air(dofs%node(i))) cycle
+            if (s%constraint%air(s%dofs%node(i))) cycle
          end if
          norms(f) = norms(f) + values(i)**2
       end do
@@ -286,42 +240,30 @@ contains
 
    !> Measures the errors of the fields: docs/theory/host.md section 5.1. The log gets them [-], the worst field and its
    !> worst unknown, and the forces.
-   pure subroutine measure(dofs, constraint, assembly, rhs, rounding, largest, log)
-      type(dofs_t), intent(in) :: dofs
-      type(constraint_t), intent(in) :: constraint
-      type(assembly_t), intent(in) :: assembly
+   pure subroutine measure(s, rhs)
+      class(solution_t), intent(inout) :: s
       real(wp), intent(in) :: rhs(:)   !< (unknowns) Residual [kN, m3/s].
-      real(wp), intent(in) :: rounding(FIELDS)   !< Scales of which the tolerance asks for no more than rounding.
-      real(wp), intent(in) :: largest(FIELDS)    !< Forces of the steps so far.
-      type(log_t), intent(inout) :: log
-      real(wp) :: scales(FIELDS), most(FIELDS), worst
+      real(wp) :: most(FIELDS)
       integer :: i
 
-      ! Always the forces themselves: their rounding is the floor of what changes.
-      log%forces = norms_of(dofs, constraint, assembly%scale)
-      most = max(largest, log%forces)
-      scales = max(field_scales(dofs, constraint, assembly, most), rounding)
-      log%scales = scales
-      log%error = norms_of(dofs, constraint, rhs)/scales
-      if (allocated(assembly%water)) then
-         log%water = norm2(pack(water_of(dofs, constraint%air, rhs), has_water(dofs, constraint))) &
-                     /max(water_scale(dofs, constraint, assembly, most), maxval(rounding(AT_P_W:)))
-         log%error(AT_P_W) = max(log%error(AT_P_W), log%water)
-      end if
-      do i = 1, dofs%n
-         if (is_body(constraint, i)) &
-            log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(constraint, assembly, most, i))
-      end do
-      log%worst_field = maxloc(log%error, 1)
-      log%forces_over_scale = log%forces(log%worst_field)/scales(log%worst_field)
-      log%worst_unknown = 0
-      worst = -1.0_wp
-      do i = 1, dofs%n
-         if (dofs%field(i) /= log%worst_field .or. constraint%fixed(i)) cycle
-         if (abs(rhs(i)) > worst) then
-            worst = abs(rhs(i))
-            log%worst_unknown = i
+      associate (log => s%log, rounding => s%system%rounding)
+         ! Always the forces themselves: their rounding is the floor of what changes.
+         log%forces = norms_of(s, s%assembly%scale)
+         most = max(s%system%largest, log%forces)
+         log%scales = max(field_scales(s, most), rounding)
+         log%error = norms_of(s, rhs)/log%scales
+         if (allocated(s%assembly%water)) then
+            log%water = norm2(pack(water_of(s%dofs, s%constraint%air, rhs), has_water(s))) &
+                        /max(water_scale(s, most), maxval(rounding(AT_P_W:)))
+            log%error(AT_P_W) = max(log%error(AT_P_W), log%water)
          end if
-      end do
+         do i = 1, s%dofs%n
+            if (is_body(s%constraint, i)) &
+               log%error(AT_U_Z) = max(log%error(AT_U_Z), abs(rhs(i))/body_scale(s, most, i))
+         end do
+         log%worst_field = maxloc(log%error, 1)
+         log%forces_over_scale = log%forces(log%worst_field)/log%scales(log%worst_field)
+         log%worst_unknown = maxloc(abs(rhs), 1, s%dofs%field == log%worst_field .and. .not. s%constraint%fixed)
+      end associate
    end subroutine measure
 end module convergence

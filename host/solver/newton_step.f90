@@ -6,19 +6,18 @@
 module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
-   use convergence, only: control_t, log_t, measure, good_enough, note_stagnation, linear_tolerance, &
-                          rounding_in, water_of, BY_FORCES, BY_CHANGE, MOST_IN_VAIN
+   use convergence, only: measure, good_enough, note_stagnation, linear_tolerance, rounding_in, water_of, MOST_IN_VAIN
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
    use porous_domain, only: region_t
    use generalised_alpha, only: scheme_t, make_scheme, predict, advance_rates, STATIC
-   use linear_system, only: system_t, solve_step, asked_for, update_contacts, MOST_STEPS, T_ASSEMBLY, &
-                            T_REST, T_MATERIAL, T_CONTACT
+   use linear_system, only: solve_step, solve_anew, asked_for, update_contacts
    use prescribed_values, only: constraint_t, constrain, loads_of_water
-   use sparse_factors, only: analyse, factorise, solve_by_factors, SOLVED, SINGULAR, INACCURATE, NOT_FINITE
-   use solution, only: solution_t
+   use sparse_factors, only: SOLVED, SINGULAR, NOT_FINITE
+   use solution, only: solution_t, system_t, control_t, log_t, BY_FORCES, BY_CHANGE, T_ASSEMBLY, T_REST, T_MATERIAL, &
+                       T_CONTACT
    use sparsity_pattern, only: entry_of
    use springs, only: add_springs, add_linear_forces
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C
@@ -60,18 +59,15 @@ contains
    subroutine take_step(solution)
       class(solution_t), intent(inout) :: solution
       type(iterate_t) :: at
-      type(scheme_t) :: scheme
-      integer :: status, outcome
+      integer :: status
 
       call begin_iterate(solution, at)
-      scheme = solution%scheme
       associate (s => solution, log => solution%log, system => solution%system)
          call begin_step(solution, at)
          if (log%outcome /= CONVERGED) return
          do
-            call make_equations(scheme, solution, at, outcome)
-            log%outcome = outcome
-            if (outcome /= CONVERGED) then
+            call make_equations(solution, at)
+            if (log%outcome /= CONVERGED) then
                if (.not. at%guessed .or. log%iterations > 0) return
                call drop_guess(solution, at)
                cycle
@@ -86,17 +82,15 @@ contains
                if (.not. at%with_slopes) then
                   at%with_slopes = .true.
                   s%assembly%source = AS_BEFORE
-                  call make_equations(scheme, solution, at, outcome)
-                  log%outcome = outcome
-                  if (outcome /= CONVERGED) return
+                  call make_equations(solution, at)
+                  if (log%outcome /= CONVERGED) return
                end if
             end if
             call constrain(solution%dofs, s%pattern, s%constraint, s%next%x, s%assembly%values, at%rhs)
             if (log%iterations == 0) call find_roundings(solution, at)
             ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
             if (all(s%newton%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
-            call solve_step(s%dofs, s%pattern, s%constraint, s%assembly, linear_tolerance(s%newton), at%rhs, system, &
-                            at%dx, status)
+            call solve_step(s, linear_tolerance(s%newton), at%rhs, at%dx, status)
             if (needs_stiffness(status, system, s%assembly%fallback)) then
                at%with_slopes = .true.
                at%t0 = clock()
@@ -135,7 +129,7 @@ contains
                  system => solution%system, scheme => solution%scheme, control => solution%newton, log => solution%log)
          at%guessed = .not. control%no_predictor
          new%time = old%time + scheme%dt
-         call begin_passes(scheme, control, solution)
+         call begin_passes(control, solution)
          ! Laws that change over the step are its own.
          call follow_newton(control%tolerance, solution%domain%regions)
          at%rough = is_tight(solution%domain%regions) .and. .not. allocated(new%laws)
@@ -217,28 +211,26 @@ contains
    end function is_tight
 
    !> Makes the equations of a scheme between both states, of contacts, elements and what acts beside them: the residual
-   !> with minus sign in at%rhs, and its slopes where at%with_slopes asks for them. outcome: CONTACT_FAILED or
+   !> with minus sign in at%rhs, and its slopes where at%with_slopes asks for them. log%outcome: CONTACT_FAILED or
    !> MATERIAL_FAILED where these refuse the state, else CONVERGED.
-   subroutine make_equations(scheme, solution, at, outcome)
-      type(scheme_t), intent(in) :: scheme
+   subroutine make_equations(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
-      integer, intent(out) :: outcome
       real(wp) :: spent
 
       associate (old => solution%state, new => solution%next, assembly => solution%assembly, &
-                 system => solution%system, pattern => solution%pattern)
+                 system => solution%system, scheme => solution%scheme, outcome => solution%log%outcome)
          outcome = CONVERGED
          spent = 0.0_wp
          call add_elapsed(system%seconds(T_REST), at%t0)
          ! At the old level no force of contacts follows the unknowns.
-         if (.not. update_contacts(system, solution%dofs, pattern, old%x + scheme%l_f*(new%x - old%x), &
-                                   solution%log%iterations, at%with_slopes .and. scheme%l_f > 0.0_wp, assembly)) then
+         if (.not. update_contacts(solution, old%x + scheme%l_f*(new%x - old%x), &
+                                   at%with_slopes .and. scheme%l_f > 0.0_wp)) then
             outcome = CONTACT_FAILED
             return
          end if
          call add_elapsed(system%seconds(T_CONTACT), at%t0)
-         call assemble(solution%domain, solution%dofs, pattern, scheme, old, new, at%with_slopes, assembly)
+         call assemble(solution%domain, solution%dofs, solution%pattern, scheme, old, new, at%with_slopes, assembly)
          system%n_pass = system%n_pass + 1
          solution%log%rate_evaluations = solution%log%rate_evaluations + assembly%rate_evaluations
          call add_elapsed(spent, at%t0)
@@ -248,7 +240,7 @@ contains
             outcome = MATERIAL_FAILED
             return
          end if
-         call add_what_acts(scheme, solution, at)
+         call add_what_acts(solution, at)
       end associate
    end subroutine make_equations
 
@@ -280,7 +272,7 @@ contains
                  control => solution%newton, log => solution%log)
          call solution%choose(at%rhs, unsettled)
          if (allocated(system%contacts)) unsettled = unsettled .or. system%contacts%unsettled
-         call measure(solution%dofs, constraint, assembly, at%rhs, system%rounding, system%largest, log)
+         call measure(solution, at%rhs)
          norm = norm2(pack(at%rhs, .not. constraint%fixed))
          ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
          if (log%iterations == 1) then
@@ -363,15 +355,14 @@ contains
    end function needs_stiffness
 
    !> Sets what the passes of a step over the elements are asked for.
-   pure subroutine begin_passes(scheme, control, solution)
-      type(scheme_t), intent(in) :: scheme
+   pure subroutine begin_passes(control, solution)
       type(control_t), intent(in) :: control
       type(solution_t), intent(inout) :: solution
 
       associate (assembly => solution%assembly)
          assembly%air = solution%constraint%air
          assembly%with_change = control%measure == BY_CHANGE
-         assembly%rounding_share = merge(rounding_in(scheme%has_inertia)/control%tolerance, 0.0_wp, &
+         assembly%rounding_share = merge(rounding_in(solution%scheme%has_inertia)/control%tolerance, 0.0_wp, &
                                          assembly%with_change)
          assembly%fallback = NO_FALLBACK
          call follow_slopes_first(assembly)
@@ -429,15 +420,14 @@ contains
    end function rounding_of_unknowns
 
    !> Adds rigid bodies, boundaries, contacts and loads to the elements; at%rhs becomes minus the residual.
-   subroutine add_what_acts(scheme, solution, at)
-      type(scheme_t), intent(in) :: scheme
+   subroutine add_what_acts(solution, at)
       type(solution_t), intent(inout) :: solution
       type(iterate_t), intent(inout) :: at
       real(wp), allocatable :: without(:)   !< The residual without contacts.
 
       associate (assembly => solution%assembly, system => solution%system, constraint => solution%constraint, &
-                 rhs => at%rhs)
-         call add_forces(scheme, at%with_slopes, solution)
+                 scheme => solution%scheme, rhs => at%rhs)
+         call add_forces(at%with_slopes, solution)
          allocate (without(merge(solution%dofs%n, 0, allocated(at%touched))))
          if (allocated(at%touched)) without(:) = assembly%residual
          if (allocated(system%contacts)) then
@@ -473,15 +463,14 @@ contains
    subroutine start_accelerations(solution)
       type(solution_t), intent(inout) :: solution
       type(constraint_t) :: held
-      type(scheme_t) :: scheme
       type(iterate_t) :: at
-      integer :: status, i, f, steps
+      integer :: status, i, f
 
-      associate (state => solution%state, work => solution%next, pattern => solution%pattern, log => solution%log, &
-                 constraint => solution%constraint, assembly => solution%assembly, system => solution%system)
+      associate (state => solution%state, work => solution%next, log => solution%log, &
+                 constraint => solution%constraint, assembly => solution%assembly)
          ! Values and velocities at the old level, accelerations at the new one: the residual is linear in them.
-         scheme = scheme_t(has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, l_p=0.0_wp, &
-                           c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
+         solution%scheme = scheme_t(has_rates=.true., has_inertia=.true., l_f=0.0_wp, l_v=0.0_wp, l_a=1.0_wp, &
+                                    l_p=0.0_wp, c_v=0.0_wp, c_a=1.0_wp, c_p=0.0_wp)
          held = constraint
          held%fixed = constraint%fixed .or. solution%dofs%field > DISPLACEMENTS
          held%target = 0.0_wp
@@ -491,17 +480,11 @@ contains
          state%a = 0.0_wp
          work%a = 0.0_wp
          call begin_iterate(solution, at)
-         call make_equations(scheme, solution, at, log%outcome)
+         call make_equations(solution, at)
          if (log%outcome /= CONVERGED) return
-         call constrain(solution%dofs, pattern, held, 0.0_wp*state%x, assembly%values, at%rhs)
-         if (.not. system%analysed) call analyse(system%sparse, pattern%row, pattern%col, status)
-         system%analysed = .true.
-         call factorise(system%sparse, assembly%values, status)
-         system%factored = .false.
-         if (status == SOLVED) call solve_by_factors(system%sparse, assembly%values, at%rhs, &
-                                                     spread(1.0_wp, 1, size(at%rhs)), 0.0_wp, MOST_STEPS, at%dx, &
-                                                     steps, status)
-         if (status == INACCURATE) status = SOLVED
+         call constrain(solution%dofs, solution%pattern, held, 0.0_wp*state%x, assembly%values, at%rhs)
+         call solve_anew(solution, spread(1.0_wp, 1, size(at%rhs)), 0.0_wp, at%rhs, at%dx, status)
+         solution%system%factored = .false.
          if (status /= SOLVED) then
             log%outcome = outcome_of(status)
             return
@@ -522,30 +505,30 @@ contains
       real(wp), allocatable, intent(out) :: forces(:)   !< (unknowns) [kN]
       type(scheme_t) :: scheme
       type(iterate_t) :: at
-      integer :: outcome
 
       associate (constraint => solution%constraint)
          call begin_iterate(solution, at)
          at%with_slopes = .false.
-         scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
+         scheme = solution%scheme
+         solution%scheme = make_scheme(STATIC, 1.0_wp, 1.0_wp)
          constraint%load_1 = constraint%load_0
          solution%assembly%slopes%known = .false.   ! the stresses that are there, not those of a step
-         call begin_passes(scheme, control_t(), solution)
-         call make_equations(scheme, solution, at, outcome)
-         good = outcome == CONVERGED
+         call begin_passes(control_t(), solution)
+         call make_equations(solution, at)
+         solution%scheme = scheme
+         good = solution%log%outcome == CONVERGED
          forces = merge(0.0_wp, at%rhs, constraint%fixed .or. solution%dofs%field > DISPLACEMENTS)
       end associate
    end function unbalanced_forces
 
    !> Adds the inertia of rigid bodies, and the forces of terms.
-   subroutine add_forces(scheme, slopes, solution)
-      type(scheme_t), intent(in) :: scheme
+   subroutine add_forces(slopes, solution)
       logical, intent(in) :: slopes
       type(solution_t), intent(inout) :: solution
       integer :: i, f, k, place
       real(wp) :: force
 
-      associate (pattern => solution%pattern, assembly => solution%assembly, constraint => solution%constraint, &
+      associate (assembly => solution%assembly, constraint => solution%constraint, scheme => solution%scheme, &
                  old => solution%state, new => solution%next)
          do i = 1, solution%dofs%n
             if (.not. constraint%mass(i) > 0.0_wp) cycle
@@ -554,12 +537,12 @@ contains
             force = constraint%mass(i)*(old%a(f, k) + scheme%l_a*(new%a(f, k) - old%a(f, k)))
             assembly%residual(i) = assembly%residual(i) + force
             assembly%scale(i) = assembly%scale(i) + abs(force)
-            place = entry_of(pattern, i, i)
+            place = entry_of(solution%pattern, i, i)
             if (slopes) assembly%values(place) = assembly%values(place) + constraint%mass(i)*scheme%c_a
          end do
-         call add_springs(constraint%springs, solution%dofs, pattern, scheme, old, new, slopes, assembly)
-         call add_linear_forces(constraint%linear, solution%dofs, pattern, scheme, old, new, slopes, assembly)
       end associate
+      call add_springs(solution, slopes)
+      call add_linear_forces(solution, slopes)
    end subroutine add_forces
 
    pure subroutine add_correction(dofs, dx, x, share, largest)

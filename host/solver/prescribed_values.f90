@@ -5,11 +5,29 @@ module prescribed_values
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
    use sparsity_pattern, only: pattern_t, entry_of
-   use springs, only: spring_t, linear_forces_t
    use unknown_fields, only: AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: constraint_t, is_released, constrain, loads_of_water
+   public :: constraint_t, linear_forces_t, spring_t, is_released, constrain, loads_of_water
+
+   !> Dashpots or springs of a term: forces in proportion to velocities or displacements, outflow to rates of pressures.
+   type :: linear_forces_t
+      logical :: acts = .false.                  !< The forces act in the step under way.
+      logical :: by_rates = .true.               !< Else they act against displacements.
+      integer, allocatable :: row(:), column(:)  !< Unknowns of an entry, which elements bring together.
+      real(wp), allocatable :: value(:)          !< Force over velocity [kN s/m] or displacement [kN/m]; outflow over
+                                                 !< rate [m3/kPa].
+   end type linear_forces_t
+
+   !> A spring with a dashpot between two unknowns.
+   type :: spring_t
+      logical :: acts = .false.                  !< The force acts in the step under way.
+      logical :: pulls = .false.                 !< Else its ends may part.
+      integer :: upper = 0, lower = 0            !< Unknowns of its ends.
+      real(wp) :: stiffness = 0.0_wp             !< [kN/m]
+      real(wp) :: damping = 0.0_wp               !< In dynamic steps [kN s/m].
+      real(wp) :: clearance = 0.0_wp             !< Between the ends at the start [m].
+   end type spring_t
 
    !> Prescribed unknowns and loads of a step.
    type :: constraint_t

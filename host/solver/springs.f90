@@ -5,66 +5,46 @@
 module springs
    use kinds, only: wp
    use degrees_of_freedom, only: dofs_t
-   use equation_assembly, only: assembly_t
    use generalised_alpha, only: scheme_t
    use porous_domain, only: model_state_t
-   use sparsity_pattern, only: pattern_t, entry_of
+   use prescribed_values, only: spring_t
+   use solution, only: solution_t
+   use sparsity_pattern, only: entry_of
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: linear_forces_t, add_linear_forces, work_of_linear_forces, water_through_dashpots
-   public :: spring_t, add_springs, add_mean_of_springs
-
-   type :: linear_forces_t
-      logical :: acts = .false.                  !< The forces act in the step under way.
-      logical :: by_rates = .true.               !< Else they act against displacements.
-      integer, allocatable :: row(:), column(:)  !< Unknowns of an entry, which elements bring together.
-      real(wp), allocatable :: value(:)          !< Force over velocity [kN s/m] or displacement [kN/m]; outflow over
-                                                 !< rate [m3/kPa].
-   end type linear_forces_t
-
-   type :: spring_t
-      logical :: acts = .false.                  !< The force acts in the step under way.
-      logical :: pulls = .false.                 !< Else its ends may part.
-      integer :: upper = 0, lower = 0            !< Unknowns of its ends.
-      real(wp) :: stiffness = 0.0_wp             !< [kN/m]
-      real(wp) :: damping = 0.0_wp               !< In dynamic steps [kN s/m].
-      real(wp) :: clearance = 0.0_wp             !< Between the ends at the start [m].
-   end type spring_t
+   public :: add_linear_forces, work_of_linear_forces, water_through_dashpots
+   public :: add_springs, add_mean_of_springs
 contains
    !> Adds forces and outflow at the levels of their rates or displacements, and the slopes. docs/theory/host.md section
    !> 7.4. Dashpots do nothing in steps that are not dynamic. The sums go into residual and scale [kN, m3/s] and the
    !> matrix, whose pattern must have their places.
-   subroutine add_linear_forces(list, dofs, pattern, scheme, old, new, slopes, assembly)
-      type(linear_forces_t), intent(in) :: list(:)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
+   subroutine add_linear_forces(s, slopes)
+      class(solution_t), intent(inout) :: s
       logical, intent(in) :: slopes
-      type(assembly_t), intent(inout) :: assembly
       real(wp) :: force, level, slope
       integer :: i, k, f, node, place
 
-      do i = 1, size(list)
-         if (.not. list(i)%acts .or. (list(i)%by_rates .and. .not. scheme%has_inertia)) cycle
-         associate (row => list(i)%row, column => list(i)%column, value => list(i)%value)
-            do k = 1, size(row)
-               f = dofs%field(column(k))
-               node = dofs%node(column(k))
-               if (list(i)%by_rates) then
+      do i = 1, size(s%constraint%linear)
+         associate (one => s%constraint%linear(i), assembly => s%assembly, scheme => s%scheme, old => s%state, &
+                    new => s%next)
+            if (.not. one%acts .or. (one%by_rates .and. .not. scheme%has_inertia)) cycle
+            do k = 1, size(one%row)
+               f = s%dofs%field(one%column(k))
+               node = s%dofs%node(one%column(k))
+               if (one%by_rates) then
                   level = merge(scheme%l_v, scheme%l_p, f <= DISPLACEMENTS)
                   slope = merge(scheme%c_v, scheme%c_p, f <= DISPLACEMENTS)
-                  force = value(k)*(old%v(f, node) + level*(new%v(f, node) - old%v(f, node)))
+                  force = one%value(k)*(old%v(f, node) + level*(new%v(f, node) - old%v(f, node)))
                else
                   slope = scheme%l_f
-                  force = value(k)*(old%x(f, node) + scheme%l_f*(new%x(f, node) - old%x(f, node)))
+                  force = one%value(k)*(old%x(f, node) + scheme%l_f*(new%x(f, node) - old%x(f, node)))
                end if
-               assembly%residual(row(k)) = assembly%residual(row(k)) + force
-               assembly%scale(row(k)) = assembly%scale(row(k)) + abs(force)
+               assembly%residual(one%row(k)) = assembly%residual(one%row(k)) + force
+               assembly%scale(one%row(k)) = assembly%scale(one%row(k)) + abs(force)
                if (.not. slopes) cycle
-               place = entry_of(pattern, row(k), column(k))
-               assembly%values(place) = assembly%values(place) + slope*value(k)
+               place = entry_of(s%pattern, one%row(k), one%column(k))
+               assembly%values(place) = assembly%values(place) + slope*one%value(k)
             end do
          end associate
       end do
@@ -72,125 +52,113 @@ contains
 
    !> Finds the energy that dashpots take out of a step, or springs store in it, by the mean at its ends, at given
    !> displacements [kJ]. docs/theory/host.md section 9. Outflow does no work.
-   pure real(wp) function work_of_linear_forces(list, by_rates, dofs, old, new, change) result(work)
-      type(linear_forces_t), intent(in) :: list(:)
-      logical, intent(in) :: by_rates   !< Dashpots, else springs.
-      type(dofs_t), intent(in) :: dofs
-      type(model_state_t), intent(in) :: old, new
+   pure real(wp) function work_of_linear_forces(s, by_rates, change) result(work)
+      class(solution_t), intent(in) :: s
+      logical, intent(in) :: by_rates        !< Dashpots, else springs.
       real(wp), intent(in) :: change(:, :)   !< (2, nodes) [m]
       real(wp) :: mean
       integer :: i, k
 
       work = 0.0_wp
-      do i = 1, size(list)
-         if (.not. list(i)%acts .or. (list(i)%by_rates .neqv. by_rates)) cycle
-         do k = 1, size(list(i)%row)
-            associate (f => dofs%field(list(i)%column(k)), node => dofs%node(list(i)%column(k)), &
-                       g => dofs%field(list(i)%row(k)), at => dofs%node(list(i)%row(k)))
-               if (f > DISPLACEMENTS) cycle
-               if (by_rates) then
-                  work = work + 0.5_wp*list(i)%value(k)*(old%v(f, node) + new%v(f, node))*change(g, at)
-               else
-                  mean = 0.5_wp*(old%x(f, node) + new%x(f, node))
-                  work = work + list(i)%value(k)*mean*change(g, at)
-               end if
-            end associate
-         end do
+      do i = 1, size(s%constraint%linear)
+         associate (one => s%constraint%linear(i), dofs => s%dofs, old => s%state, new => s%next)
+            if (.not. one%acts .or. (one%by_rates .neqv. by_rates)) cycle
+            do k = 1, size(one%row)
+               associate (f => dofs%field(one%column(k)), node => dofs%node(one%column(k)), &
+                          g => dofs%field(one%row(k)), at => dofs%node(one%row(k)))
+                  if (f > DISPLACEMENTS) cycle
+                  if (by_rates) then
+                     work = work + 0.5_wp*one%value(k)*(old%v(f, node) + new%v(f, node))*change(g, at)
+                  else
+                     mean = 0.5_wp*(old%x(f, node) + new%x(f, node))
+                     work = work + one%value(k)*mean*change(g, at)
+                  end if
+               end associate
+            end do
+         end associate
       end do
    end function work_of_linear_forces
 
    !> Sums the water that has left in a step through dashpots that act [m3], in proportion to the changes of the
    !> pressures. The row of p_w is that of both fluids, but for nodes whose air pressure is prescribed.
-   pure real(wp) function water_through_dashpots(list, dofs, air, change) result(water)
-      type(linear_forces_t), intent(in) :: list(:)
-      type(dofs_t), intent(in) :: dofs
-      logical, intent(in) :: air(:)             !< (nodes) The air pressure is prescribed.
-      real(wp), intent(in) :: change(:, :)      !< (FIELDS, nodes) Changes of the unknowns [m, kPa].
+   pure real(wp) function water_through_dashpots(s) result(water)
+      class(solution_t), intent(in) :: s
+      real(wp) :: part
       integer :: i, k
 
       water = 0.0_wp
-      do i = 1, size(list)
-         if (.not. list(i)%acts .or. .not. list(i)%by_rates) cycle
-         do k = 1, size(list(i)%row)
-            associate (column => list(i)%column(k), row => list(i)%row(k), value => list(i)%value(k))
-               if (dofs%field(row) == AT_P_W) then
-                  water = water + value*change(dofs%field(column), dofs%node(column))
-               else if (dofs%field(row) == AT_P_C .and. .not. air(dofs%node(row))) then
-                  water = water - value*change(dofs%field(column), dofs%node(column))
-               end if
-            end associate
-         end do
+      do i = 1, size(s%constraint%linear)
+         associate (one => s%constraint%linear(i), dofs => s%dofs)
+            if (.not. one%acts .or. .not. one%by_rates) cycle
+            do k = 1, size(one%row)
+               associate (row => one%row(k), f => dofs%field(one%column(k)), node => dofs%node(one%column(k)))
+                  part = one%value(k)*(s%next%x(f, node) - s%state%x(f, node))
+                  if (dofs%field(row) == AT_P_W) then
+                     water = water + part
+                  else if (dofs%field(row) == AT_P_C .and. .not. s%constraint%air(dofs%node(row))) then
+                     water = water - part
+                  end if
+               end associate
+            end do
+         end associate
       end do
    end function water_through_dashpots
 
-   !> Adds the forces of springs that act, and their slopes.
-   subroutine add_springs(list, dofs, pattern, scheme, old, new, slopes, assembly)
-      type(spring_t), intent(in) :: list(:)
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
+   !> Adds the forces of springs that act at the levels of their displacements and velocities, and their slopes.
+   subroutine add_springs(s, slopes)
+      class(solution_t), intent(inout) :: s
       logical, intent(in) :: slopes
-      type(assembly_t), intent(inout) :: assembly
       integer :: i
 
-      do i = 1, size(list)
-         if (list(i)%acts) call add_spring(list(i), dofs, pattern, scheme, old, new, slopes, assembly)
+      do i = 1, size(s%constraint%springs)
+         if (s%constraint%springs(i)%acts) call add_spring(s%constraint%springs(i))
       end do
+   contains
+      subroutine add_spring(one)
+         type(spring_t), intent(in) :: one
+         real(wp) :: u0, u1, v0, v1, force, before, slope
+         integer :: a, b, ends(2), signs(2)
+
+         associate (scheme => s%scheme, assembly => s%assembly)
+            call shortening(one, s%dofs, s%state, u0, v0)
+            call shortening(one, s%dofs, s%next, u1, v1)
+            force = 0.0_wp
+            if (may_push(one, scheme, u0, v0)) force = push(one, scheme, u0 + scheme%l_f*(u1 - u0), &
+                                                            v0 + scheme%l_v*(v1 - v0))
+            before = force_at(one, scheme, u0, v0)
+            ends = [one%upper, one%lower]
+            signs = [-1, 1]
+            assembly%residual(ends) = assembly%residual(ends) + signs*force
+            assembly%scale(ends) = assembly%scale(ends) + abs(force)
+            if (assembly%with_change) assembly%change(ends) = assembly%change(ends) + abs(force - before)
+            if (.not. slopes .or. .not. (abs(force) > 0.0_wp .or. one%pulls)) return
+            slope = one%stiffness*scheme%l_f
+            if (scheme%has_inertia) slope = slope + one%damping*scheme%c_v
+            do a = 1, 2
+               do b = 1, 2
+                  associate (value => assembly%values(entry_of(s%pattern, ends(a), ends(b))))
+                     value = value + signs(a)*signs(b)*slope
+                  end associate
+               end do
+            end do
+         end associate
+      end subroutine add_spring
    end subroutine add_springs
 
-   !> Adds forces at the levels of their displacements and velocities, and the slopes.
-   subroutine add_spring(one, dofs, pattern, scheme, old, new, slopes, assembly)
-      type(spring_t), intent(in) :: one
-      type(dofs_t), intent(in) :: dofs
-      type(pattern_t), intent(in) :: pattern
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
-      logical, intent(in) :: slopes
-      type(assembly_t), intent(inout) :: assembly
-      real(wp) :: u0, u1, v0, v1, force, before, slope
-      integer :: a, b, ends(2), signs(2)
-
-      call shortening(one, dofs, old, u0, v0)
-      call shortening(one, dofs, new, u1, v1)
-      force = 0.0_wp
-      if (may_push(one, scheme, u0, v0)) force = push(one, scheme, u0 + scheme%l_f*(u1 - u0), &
-                                                       v0 + scheme%l_v*(v1 - v0))
-      before = force_at(one, scheme, u0, v0)
-      ends = [one%upper, one%lower]
-      signs = [-1, 1]
-      assembly%residual(ends) = assembly%residual(ends) + signs*force
-      assembly%scale(ends) = assembly%scale(ends) + abs(force)
-      if (assembly%with_change) assembly%change(ends) = assembly%change(ends) + abs(force - before)
-      if (.not. slopes .or. .not. (abs(force) > 0.0_wp .or. one%pulls)) return
-      slope = one%stiffness*scheme%l_f
-      if (scheme%has_inertia) slope = slope + one%damping*scheme%c_v
-      do a = 1, 2
-         do b = 1, 2
-            associate (value => assembly%values(entry_of(pattern, ends(a), ends(b))))
-               value = value + signs(a)*signs(b)*slope
-            end associate
-         end do
-      end do
-   end subroutine add_spring
-
    !> Adds the mean of the forces of springs at both ends of a step, for the balance of energy.
-   subroutine add_mean_of_springs(list, dofs, scheme, old, new, force)
-      type(spring_t), intent(in) :: list(:)
-      type(dofs_t), intent(in) :: dofs
-      type(scheme_t), intent(in) :: scheme
-      type(model_state_t), intent(in) :: old, new
+   subroutine add_mean_of_springs(s, force)
+      class(solution_t), intent(in) :: s
       real(wp), intent(inout) :: force(:)   !< (unknowns) [kN]
       real(wp) :: u, v, mean
       integer :: i
 
-      do i = 1, size(list)
-         if (.not. list(i)%acts) cycle
-         associate (one => list(i))
-            call shortening(one, dofs, old, u, v)
-            mean = force_at(one, scheme, u, v)
-            call shortening(one, dofs, new, u, v)
-            mean = 0.5_wp*(mean + force_at(one, scheme, u, v))
+      do i = 1, size(s%constraint%springs)
+         associate (one => s%constraint%springs(i))
+            if (.not. one%acts) cycle
+            call shortening(one, s%dofs, s%state, u, v)
+            mean = force_at(one, s%scheme, u, v)
+            call shortening(one, s%dofs, s%next, u, v)
+            mean = 0.5_wp*(mean + force_at(one, s%scheme, u, v))
             force(one%upper) = force(one%upper) - mean
             force(one%lower) = force(one%lower) + mean
          end associate

@@ -21,10 +21,10 @@ module absorbing
    use permeability_laws, only: relative_t, relative_permeability
    use porous_domain, only: domain_t, edge_point_t, copy_state, mixture_density, points_of_edge, pressures_at, law_of, &
                             PER_EDGE, COUPLED, UNDRAINED
+   use prescribed_values, only: linear_forces_t
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
-   use springs, only: linear_forces_t
    use texts, only: short, whole, LENGTH
    use triangle_mesh, only: triangles_beside
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C

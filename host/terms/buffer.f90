@@ -9,11 +9,11 @@ module buffer
    use linear_system, only: join_unknowns
    use model_types, only: model_t, problem_t
    use name_search, only: defined_name, read_stages
+   use prescribed_values, only: spring_t
    use texts, only: LENGTH
    use scene_parts, only: scene_item_t, place_of
    use scene_term, only: scene_term_t
    use scene_types, only: item_of
-   use springs, only: spring_t
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
@@ -87,7 +87,7 @@ contains
             self%all(i)%place = size(problem%constraint%springs)
          end associate
       end do
-      call join_unknowns(problem%dofs, pairs, problem%system, problem%pattern, problem%assembly)
+      call join_unknowns(problem, pairs)
    end subroutine begin_run
 
    subroutine begin_stage(self, begins, problem, fault)

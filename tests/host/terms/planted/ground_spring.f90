@@ -6,7 +6,7 @@ module ground_spring
    use faults, only: fault_t
    use key_schema, only: REQUIRED, UNBOUNDED
    use key_table, only: key_table_t
-   use springs, only: linear_forces_t
+   use prescribed_values, only: linear_forces_t
    use model_types, only: model_t, problem_t, action_t
    use name_search, only: mesh_group, read_stages
    use texts, only: LENGTH
