@@ -8,8 +8,8 @@ module texts
    use kinds, only: wp
    implicit none (type, external)
    private
-   public :: lower_case, short, whole, read_number, from_c, text_at, joined, word_place, mark_length, LENGTH, &
-             PATH_LENGTH
+   public :: lower_case, short, whole, place_text, read_number, from_c, text_at, joined, word_place, mark_length, &
+             LENGTH, PATH_LENGTH
 
    integer, parameter :: LENGTH = 256        !< Longest key or value of a text that is read.
    integer, parameter :: PATH_LENGTH = 1024  !< Longest path of a file that is read, as of a word of a command line.
@@ -115,6 +115,14 @@ contains
          text = text//trim(adjustl(number(mark + 2 + verify(number(mark + 2:mark + 3)//'1', '0') - 1:)))
       end if
    end function short
+
+   !> Writes a place in the plane, as "(0.5, 2) m".
+   pure function place_text(x) result(text)
+      real(wp), intent(in) :: x(2)   !< [m]
+      character(:), allocatable :: text
+
+      text = '('//short(x(1))//', '//short(x(2))//') m'
+   end function place_text
 
    pure function without_zeros(digits) result(text)
       character(*), intent(in) :: digits

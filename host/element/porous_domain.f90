@@ -10,7 +10,7 @@ module porous_domain
    use permeability_laws, only: permeability_t
    use triangle_mesh, only: mesh_t
    use faults, only: fault_t, raise
-   use texts, only: short, whole
+   use texts, only: place_text, short, whole
    implicit none (type, external)
    private
    public :: domain_t, region_t, gauss_t, model_state_t, prepare_domain, new_state_of, copy_state, mixture_density, &
@@ -159,8 +159,8 @@ contains
                jacobian = matmul(d, transpose(x))
                det = jacobian(1, 1)*jacobian(2, 2) - jacobian(1, 2)*jacobian(2, 1)
                if (.not. det > 0.0_wp) then
-                  call raise(fault, EXIT_ELEMENT, 'Element '//whole(e)//' near ('//short(sum(x(1, :))/6)//', '// &
-                             short(sum(x(2, :))/6)//') m is inverted: its Jacobian is '//short(det)// &
+                  call raise(fault, EXIT_ELEMENT, 'Element '//whole(e)//' near '//place_text(sum(x, dim=2)/6)// &
+                             ' is inverted: its Jacobian is '//short(det)// &
                              '; move its mid-side nodes or number its corners counter-clockwise.')
                   return
                end if

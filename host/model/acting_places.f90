@@ -7,7 +7,7 @@ module acting_places
    use kinds, only: wp
    use model_types, only: model_t, action_t, SPACINGS
    use scene_parts, only: place_of, PRESCRIBED_OF_BODY
-   use texts, only: short, whole
+   use texts, only: place_text, whole
    use triangle_mesh, only: group_of_t, nodes_of, triangles_beside
    use unknown_fields, only: AT_U_R
    implicit none (type, external)
@@ -98,8 +98,8 @@ contains
             k = group%nodes(findloc(carried(group%nodes), .false., dim=1))
             call raise(fault, EXIT_GROUP, place_of(item)//whole(count(.not. carried(group%nodes)))//' of the '// &
                        whole(size(group%nodes))//' nodes of group '''//trim(group%name)//''' belong to no '// &
-                       'element, the first at ('//short(x(1, k))//', '//short(x(2, k))//') m: nothing acts there; '// &
-                       'embed the point or curve in its surface in Gmsh, or name another group.')
+                       'element, the first at '//place_text(x(:, k))//': nothing acts there; embed the point or '// &
+                       'curve in its surface in Gmsh, or name another group.')
             return
          end if
          first = 0
@@ -114,8 +114,8 @@ contains
                sides = sides_with_ground(model, item%group, s)
                if (first == 0) before = sides
                k = findloc((sides /= ON_LEFT .and. sides /= ON_RIGHT) .or. sides /= before, .true., dim=1)
-               if (k > 0) wrong = ', whose edge at ('//short(x(1, group%edges(3, k)))//', '// &
-                                  short(x(2, group%edges(3, k)))//') m '//misplaced(item, sides(k), first)
+               if (k > 0) wrong = ', whose edge at '//place_text(x(:, group%edges(3, k)))//' '// &
+                                  misplaced(item, sides(k), first)
                if (first == 0) first = s
             end if
             if (wrong == '') cycle
@@ -224,8 +224,7 @@ contains
             text = 'plate '//trim(model%plates(i)%name)
          else
             e = findloc(any(mesh%t6 == node, dim=1), .true., dim=1)
-            text = 'node '//whole(node)//' of element '//whole(e)//', ('//short(mesh%x(1, node))//', '// &
-                   short(mesh%x(2, node))//') m'
+            text = 'node '//whole(node)//' of element '//whole(e)//', '//place_text(mesh%x(:, node))
          end if
       end associate
    end function location_of

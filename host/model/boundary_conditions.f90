@@ -5,8 +5,7 @@ module boundary_conditions
    use acting_places, only: are_on_axis
    use kinds, only: wp
    use generalised_alpha, only: scheme_t, make_scheme
-   use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, load_t, plate_t, unknowns_of, &
-      SPACINGS
+   use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, plate_t, unknowns_of, SPACINGS
    use prescribed_values, only: constraint_t, is_released
    use scene_parts, only: PRESCRIBED_P_A
    use unknown_fields, only: AT_U_R, AT_P_W, AT_P_C, DISPLACEMENTS
@@ -14,7 +13,7 @@ module boundary_conditions
    private
    public :: new_constraint, constrain_step, complete_constraint, acts, follow_accelerations, &
              starting_accelerations, prescribing_fixes, forces_of_supports
-   public :: load_at, force_of, plate_loads
+   public :: load_at, plate_loads
 
    real(wp), parameter :: ROUNDING = 1.0e-6_wp    !< Share of a step by which a sum of steps may miss a time.
 contains
@@ -232,7 +231,7 @@ contains
       allocate (load(model%dofs%n), source=0.0_wp)
       do i = 1, size(model%loads)
          associate (one => model%loads(i))
-            if (one%in_stage(stage)) load = load + force_of(one, factor_at(model, one%amplitude, time))
+            if (one%in_stage(stage)) load = load + factor_at(model, one%amplitude, time)*one%vector
          end associate
       end do
       do i = 1, size(model%plates)
@@ -243,15 +242,6 @@ contains
          end associate
       end do
    end function load_at
-
-   !> Scales the forces [kN] or inflows [m3/s] of a load by a factor of its history. (unknowns)
-   pure function force_of(load, factor) result(force)
-      type(load_t), intent(in) :: load
-      real(wp), intent(in) :: factor   !< [-]
-      real(wp), allocatable :: force(:)
-
-      force = factor*load%vector
-   end function force_of
 
    !> Sums the loads on the coordinates of a plate, its weight among them: first the force upwards [kN].
    !> docs/theory/host.md section 7.3.

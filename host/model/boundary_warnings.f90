@@ -8,7 +8,7 @@ module boundary_warnings
    use model_types, only: model_t, acting_t, fix_t
    use scene_parts, only: amplitude_at, place_of, LOAD_AIR, LOAD_FORCE_R, LOAD_FORCE_Z, PRESCRIBED_P_A, &
                           PRESCRIBED_WORDS
-   use texts, only: short, whole
+   use texts, only: place_text, short, whole
    use unknown_fields, only: DISPLACEMENTS, AT_U_R, AT_P_W, AT_P_C
    implicit none (type, external)
    private
@@ -48,11 +48,10 @@ contains
                   n = findloc([(differ(before, one, model%domain%mesh%x(2, nodes(node))) .and. &
                                 any(model%domain%mesh%groups(one%group)%nodes == nodes(node)), &
                                 node=1, size(nodes))], .true., dim=1)
-                  if (n > 0) call print_warning(place_of(one)//PRESCRIBED_WORDS(one%field)//' of the node at ('// &
-                     short(model%domain%mesh%x(1, nodes(n)))//', '//short(model%domain%mesh%x(2, nodes(n)))// &
-                     ') m has two &fix in stage '//trim(model%stages(s)%name)//', of the groups '''// &
-                     trim(before%group_name)//''' and '''//trim(one%group_name)//''', with different '// &
-                     'values; the later one counts.')
+                  if (n > 0) call print_warning(place_of(one)//PRESCRIBED_WORDS(one%field)//' of the node at '// &
+                     place_text(model%domain%mesh%x(:, nodes(n)))//' has two &fix in stage '// &
+                     trim(model%stages(s)%name)//', of the groups '''//trim(before%group_name)//''' and '''// &
+                     trim(one%group_name)//''', with different values; the later one counts.')
                end associate
             end do
          end associate

@@ -8,7 +8,7 @@ module named_points
    use porous_domain, only: domain_t
    use model_types, only: point_t
    use shape_functions, only: quadratic, linear
-   use texts, only: short
+   use texts, only: place_text
    use unknown_fields, only: DISPLACEMENTS
    implicit none (type, external)
    private
@@ -55,9 +55,8 @@ contains
             end do
          end if
          if (e == 0) then
-            call raise(fault, EXIT_GROUP, '&point '//trim(point%name)//': ('//short(point%x(1))//', '// &
-                       short(point%x(2))//') m lies outside the mesh; the nearest node is at ('// &
-                       short(mesh%x(1, node))//', '//short(mesh%x(2, node))//') m.')
+            call raise(fault, EXIT_GROUP, '&point '//trim(point%name)//': '//place_text(point%x)// &
+                       ' lies outside the mesh; the nearest node is at '//place_text(mesh%x(:, node))//'.')
             return
          end if
          point%nodes = mesh%t6(:, e)

@@ -11,7 +11,7 @@ module start_look
    use model_types, only: model_t, factor_at, factors_of, value_at, fix_t, plate_t, SPACINGS
    use porous_domain, only: COUPLED, DRAINED
    use scene_parts, only: place_of, LOAD_AIR, PRESCRIBED_P_A
-   use texts, only: short, whole
+   use texts, only: place_text, short, whole
    use unknown_fields, only: AT_U_Z, AT_P_W, DISPLACEMENTS
    implicit none (type, external)
    private
@@ -57,10 +57,10 @@ contains
       i = findloc(model%actions%damps, .true., dim=1)
       if (model%stages(1)%has_inertia .and. i > 0) why = ' The dashpots of '//trim(model%actions(i)%what)// &
          ' hold no weight: find the balance in a static stage with a &fix that is limited to it.'
-      call print_warning('The start is not in balance: the forces at ('//short(balance%x(1))//', '// &
-                       short(balance%x(2))//') m are '//short(balance%stress)//' kPa away from it'//share// &
-                       '. Stage '//trim(model%stages(1)%name)//' begins with what they set free; compare rho_s, '// &
-                       'surface, surcharge, k_0 and p_w with the loads of the start.'//why)
+      call print_warning('The start is not in balance: the forces at '//place_text(balance%x)//' are '// &
+                       short(balance%stress)//' kPa away from it'//share//'. Stage '//trim(model%stages(1)%name)// &
+                       ' begins with what they set free; compare rho_s, surface, surcharge, k_0 and p_w with the '// &
+                       'loads of the start.'//why)
    end subroutine look_at_balance
 
    !> Warns of air that is not at atmospheric pressure where pores hold some, though nothing in the scene asks so.

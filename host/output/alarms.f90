@@ -12,7 +12,7 @@ module alarms
    use pressure_alarm, only: lines_t, warn_of_pressures
    use run_observer, only: observer_t, STAGE_BEGINS, STEP
    use run_state, only: run_t
-   use texts, only: short
+   use texts, only: place_text, short
    use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning, is_told
    implicit none (type, external)
@@ -90,8 +90,8 @@ contains
          end do
       end associate
       if (largest > LARGE) call print_warning(now_in(run)//'the ground is strained by up to '//short(100*largest)// &
-         ' %, most at ('//short(at(1))//', '//short(at(2))//') m. Strains are taken as small and the geometry as '// &
-         'that of the start: volumes, weights and stresses there err by about as much.', once='strain')
+         ' %, most at '//place_text(at)//'. Strains are taken as small and the geometry as that of the start: '// &
+         'volumes, weights and stresses there err by about as much.', once='strain')
    end subroutine warn_of_strain
 
    !> Finds the largest magnitude of the principal strains.

@@ -6,7 +6,7 @@ module contact_alarm
    use kinds, only: wp
    use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
    use run_state, only: run_t
-   use texts, only: short
+   use texts, only: place_text, short
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
@@ -54,9 +54,9 @@ contains
             end if
             associate (place => t%slave%x0(:, at) + x(:2, t%slave%node(at)))
                call print_warning('contact '//trim(one%name)//' begins with surfaces that overlap by up to '// &
-                  short(depth)//' m, near ('//short(place(1))//', '//short(place(2))//') m. The penalty presses '// &
-                  'there with '//short(t%probe%pressure(at))//' kPa and stores '//short(t%probe%energy)//' kJ, '// &
-                  'which no load has done: '//advice(ROUNDING_DEPTH*shortest_edge(t%slave)))
+                  short(depth)//' m, near '//place_text(place)//'. The penalty presses there with '// &
+                  short(t%probe%pressure(at))//' kPa and stores '//short(t%probe%energy)//' kJ, which no load has '// &
+                  'done: '//advice(ROUNDING_DEPTH*shortest_edge(t%slave)))
             end associate
          end associate
       end do
@@ -85,11 +85,10 @@ contains
          associate (t => run%system%contacts%interfaces(i))
             if (.not. t%acts .or. t%result%unpressed <= ALARMING_DEPTH) cycle
             name = 'contact '//trim(run%model%contacts(i)%name)
-            call print_warning(name//', time '//short(run%next%time)//' s: near ('// &
-               short(t%result%unpressed_at(1))//', '//short(t%result%unpressed_at(2))//') m the surfaces have '// &
-               'penetrated each other by '//short(100*t%result%unpressed)//' % of an edge without pressure, which '// &
-               'its gaps do not see. Set gap = ''combined'' in &contact, or refine the slave there.', &
-               once='penetration of '//name)
+            call print_warning(name//', time '//short(run%next%time)//' s: near '// &
+               place_text(t%result%unpressed_at)//' the surfaces have penetrated each other by '// &
+               short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
+               'gap = ''combined'' in &contact, or refine the slave there.', once='penetration of '//name)
          end associate
       end do
    end subroutine warn_of_penetration

@@ -11,7 +11,7 @@ module cycles_alarm
    use run_observer, only: observer_t, BEGINS, STAGE_BEGINS, STEP
    use run_state, only: run_t
    use scene_parts, only: amplitude_at
-   use texts, only: short, whole
+   use texts, only: place_text, whole
    use turns, only: follow
    use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning, is_told
@@ -135,9 +135,7 @@ contains
          if (at <= n) then
             text = 'history '''//trim(run%model%amplitudes(at)%name)//''''
          else
-            associate (x => run%domain%mesh%x(:, (at - n + 1)/2))
-               text = 'the ground at ('//short(x(1))//', '//short(x(2))//') m'
-            end associate
+            text = 'the ground at '//place_text(run%domain%mesh%x(:, (at - n + 1)/2))
          end if
       end function what_turned
    end subroutine count_turns

@@ -11,7 +11,7 @@ module localisation
    use porous_domain, only: means_t, means_over, is_present, strain_of
    use run_observer, only: observer_t, BEGINS, STEP, STAGE_ENDS
    use run_state, only: run_t
-   use texts, only: short, whole
+   use texts, only: place_text, short, whole
    use unknown_fields, only: DISPLACEMENTS
    use warnings, only: print_warning
    implicit none (type, external)
@@ -147,8 +147,8 @@ contains
       end associate
       call print_warning(now_in(run)//'shear localises. '//short(0.1_wp*nint(1000*self%share))// &
          ' % of the shear work so far is done where the tangent of the soil has lost ellipticity (column localised '// &
-         'of ledger.csv; above '//short(100*TOLD_SHARE)//' % since '//short(self%since)//' s), most of it at ('// &
-         short(x(1))//', '//short(x(2))//') m in a band with its normal at '//whole(nint(self%normal*180/PI))// &
+         'of ledger.csv; above '//short(100*TOLD_SHARE)//' % since '//short(self%since)//' s), most of it at '// &
+         place_text(x)//' in a band with its normal at '//whole(nint(self%normal*180/PI))// &
          ' degrees from r towards z. Displacements depend on the cell there and have no limit: state the cell with '// &
          'them, or give the &region a viscosity.')
    end subroutine tell

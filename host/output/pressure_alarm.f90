@@ -9,7 +9,7 @@ module pressure_alarm
    use model_types, only: now_in
    use porous_domain, only: is_present, COUPLED
    use run_state, only: run_t
-   use texts, only: short
+   use texts, only: place_text, short
    use unknown_fields, only: AT_P_W
    implicit none (type, external)
    private
@@ -61,11 +61,11 @@ contains
          if (.not. allocated(lines%nodes)) lines = find_lines(mesh%x, mesh%t6)
          call find_alternation(lines, x(AT_P_W, :size(counts)), counts, share, node)
          if (share <= ALARMING_SHARE) return
-         call print_warning(now_in(run)//'the pore water pressure at ('//short(mesh%x(1, node))//', '// &
-            short(mesh%x(2, node))//') m, '//short(x(AT_P_W, node))//' kPa, lies to the other side of the mean of '// &
-            'its neighbours than they do of theirs, by '//short(100*share)//' % of the range of all pressures. '// &
-            'Pressures that alternate from node to node are wrong: set pressures = ''linear'' in &scene, which is '// &
-            'stable where water cannot drain.', once=OSCILLATION)
+         call print_warning(now_in(run)//'the pore water pressure at '//place_text(mesh%x(:, node))//', '// &
+            short(x(AT_P_W, node))//' kPa, lies to the other side of the mean of its neighbours than they do of '// &
+            'theirs, by '//short(100*share)//' % of the range of all pressures. Pressures that alternate from node '// &
+            'to node are wrong: set pressures = ''linear'' in &scene, which is stable where water cannot drain.', &
+            once=OSCILLATION)
       end associate
    end subroutine warn_of_oscillation
 
@@ -80,9 +80,8 @@ contains
             do g = 1, m%rule
                associate (stress => run%next%stress(:, (e - 1)*m%rule + g), x => m%gauss(g, e)%x)
                   if (.not. lost_pressure(law, stress)) cycle
-                  call print_warning('time '//short(run%next%time)//' s: the mean effective stress p'' at ('// &
-                     short(x(1))//', '//short(x(2))//') m is '//short(-sum(stress(:3))/3)//' kPa: '//PRESSURE_LOST, &
-                                     once=NO_PRESSURE)
+                  call print_warning('time '//short(run%next%time)//' s: the mean effective stress p'' at '// &
+                     place_text(x)//' is '//short(-sum(stress(:3))/3)//' kPa: '//PRESSURE_LOST, once=NO_PRESSURE)
                   return
                end associate
             end do
@@ -100,8 +99,8 @@ contains
       associate (x => run%domain%mesh%x, p_w => run%next%x(AT_P_W, :))
          node = minloc(p_w(:size(x, 2)), dim=1)
          if (p_w(node) > -OVEN_DRY) return
-         call print_warning(now_in(run)//'the pore water at ('//short(x(1, node))//', '//short(x(2, node))// &
-            ') m is under a tension of '//short(-p_w(node))//' kPa. Soil is oven-dry at '//short(OVEN_DRY)//' kPa: '// &
+         call print_warning(now_in(run)//'the pore water at '//place_text(x(:, node))// &
+            ' is under a tension of '//short(-p_w(node))//' kPa. Soil is oven-dry at '//short(OVEN_DRY)//' kPa: '// &
             'more is drawn than the ground holds or lets through, and the rest comes out of water that expands. '// &
             'Let a &fix of p_w, or a &history, limit what is drawn.', once=DRY_GROUND)
       end associate

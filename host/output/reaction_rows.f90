@@ -4,7 +4,7 @@
 !> &fix that prescribes it, so that the columns add up to the whole. docs/theory/host.md section 9.1.
 module reaction_rows
    use kinds, only: wp
-   use boundary_conditions, only: prescribing_fixes, forces_of_supports, force_of
+   use boundary_conditions, only: prescribing_fixes, forces_of_supports
    use csv, only: quoted
    use model_types, only: model_t, factor_at
    use run_state, only: run_t
@@ -163,24 +163,23 @@ contains
       end subroutine add_reactions
 
       subroutine add_loads()
-         real(wp) :: factor, vector(run%dofs%n)
+         real(wp) :: factor
          integer :: i
 
          do i = 1, size(run%model%loads)
             associate (load => run%model%loads(i), field => run%dofs%field)
                if (.not. load%in_stage(run%at%stage)) cycle
-               vector = force_of(load, 1.0_wp)
                factor = factor_at(run%model, load%amplitude, run%state%time - run%scheme%dt)
                factor = factor + run%scheme%l_f*(factor_at(run%model, load%amplitude, run%state%time) - factor)
                associate (sum_of => sums(:, load%group))
                   select case (load%kind)
                   case (LOAD_WATER)
-                     sum_of(IN_W) = sum_of(IN_W) + factor*sum(vector, mask=field == AT_P_W)
+                     sum_of(IN_W) = sum_of(IN_W) + factor*sum(load%vector, mask=field == AT_P_W)
                   case (LOAD_AIR)
-                     sum_of(IN_A) = sum_of(IN_A) + factor*sum(vector, mask=field == AT_P_C)
+                     sum_of(IN_A) = sum_of(IN_A) + factor*sum(load%vector, mask=field == AT_P_C)
                   case default
-                     sum_of(LOAD_R) = sum_of(LOAD_R) + factor*sum(vector, mask=field == AT_U_R)
-                     sum_of(LOAD_Z) = sum_of(LOAD_Z) + factor*sum(vector, mask=field == AT_U_Z)
+                     sum_of(LOAD_R) = sum_of(LOAD_R) + factor*sum(load%vector, mask=field == AT_U_R)
+                     sum_of(LOAD_Z) = sum_of(LOAD_Z) + factor*sum(load%vector, mask=field == AT_U_Z)
                   end select
                end associate
             end associate

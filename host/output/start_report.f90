@@ -12,7 +12,7 @@ module start_report
    use scene_types, only: scene_t
    use scene_warnings, only: warn_of_scene
    use start_balance, only: find_imbalance
-   use texts, only: short, whole
+   use texts, only: place_text, short, whole
    implicit none (type, external)
    private
    public :: report_start, report_restart
@@ -28,8 +28,7 @@ contains
       if (.not. quiet) call announce(run, verbose)
       call find_imbalance(run, balance)
       if (.not. quiet .and. balance%known) write (output_unit, '(a)') 'Start: at most '//short(balance%stress)// &
-         ' kPa without balance, at ('//short(balance%x(1))//', '//short(balance%x(2))//') m; the stress there is '// &
-         short(balance%there)//' kPa.'
+         ' kPa without balance, at '//place_text(balance%x)//'; the stress there is '//short(balance%there)//' kPa.'
       call warn_of_scene(scene, run%model, run%tension, balance)
       if (.not. only_check) return
       call enter_stage(run, 1)

@@ -4,7 +4,7 @@
 module start_balance
    use kinds, only: wp
    use acting_places, only: given_in
-   use boundary_conditions, only: force_of, plate_loads
+   use boundary_conditions, only: plate_loads
    use start_findings, only: balance_t
    use model_types, only: model_t, factor_at, value_at, load_t, unknowns_of
    use newton_step, only: unbalanced_forces
@@ -74,10 +74,11 @@ contains
 
       most = 0.0_wp
       do i = 1, size(run%model%loads)
-         water = water_in(run, run%model%loads(i))
-         if (.not. water > 0.0_wp) cycle
-         forces = forces + force_of(run%model%loads(i), factor_at(run%model, run%model%loads(i)%amplitude, 0.0_wp))
-         most = max(most, water)
+         associate (one => run%model%loads(i))
+            water = water_in(run, one)
+            if (water > 0.0_wp) forces = forces + factor_at(run%model, one%amplitude, 0.0_wp)*one%vector
+            most = max(most, water)
+         end associate
       end do
    end subroutine add_weight_of_water
 
@@ -141,7 +142,7 @@ contains
       do i = 1, size(run%model%loads)
          associate (one => run%model%loads(i))
             if (.not. one%in_stage(1) .or. water_in(run, one) > 0.0_wp) cycle
-            call carry(force_of(one, factor_at(run%model, one%amplitude, 0.0_wp)))
+            call carry(factor_at(run%model, one%amplitude, 0.0_wp)*one%vector)
          end associate
       end do
       do i = 1, size(run%model%plates)

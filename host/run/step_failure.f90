@@ -5,7 +5,7 @@ module step_failure
    use kinds, only: wp
    use acting_places, only: location_of
    use faults, only: fault_t, raise
-   use texts, only: short, whole
+   use texts, only: place_text, short, whole
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
    use element_equations, only: STRAIN_TOO_LARGE
    use newton_step, only: MATERIAL_FAILED, BODY_FREE, SOLVER_FAILED, CONTACT_FAILED, EQUATIONS_LOST
@@ -160,7 +160,7 @@ contains
       end associate
       text = ', also with the elastic stiffness of '//whole(run%assembly%replaced)// &
              ' points that have no stiffness against some strain (tension cut-off or failure), '// &
-             'most of them in element '//whole(e)//', ('//short(x(1))//', '//short(x(2))//') m'
+             'most of them in element '//whole(e)//', '//place_text(x)
    end function soft_points
 
    !> Names the largest and the least slope of the free displacements, where the least are rounding beside the largest

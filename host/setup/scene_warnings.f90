@@ -17,7 +17,7 @@ module scene_warnings
    use scene_types, only: scene_t, groups_named, item_of
    use start_look, only: warn_of_start
    use stress_units, only: KILOPASCAL
-   use texts, only: short, whole
+   use texts, only: place_text, short, whole
    use triangle_mesh, only: mesh_t, sides_of, triangles_beside
    implicit none (type, external)
    private
@@ -246,7 +246,7 @@ contains
             end do
          end do
          if (pairs > 0) call print_warning('The mesh has '//whole(pairs)//' pairs of boundary nodes at one place '// &
-            'that nothing joins, the first at ('//short(x(1, first))//', '//short(x(2, first))//') m: the ground '// &
+            'that nothing joins, the first at '//place_text(x(:, first))//': the ground '// &
             'is slit there. Merge them (Coherence in Gmsh, or gmsh.model.mesh.removeDuplicateNodes()), or give a '// &
             '&contact or &tie between the two sides.')
       end associate

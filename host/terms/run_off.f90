@@ -4,7 +4,7 @@
 !> the primal-dual active set strategy. docs/theory/host.md section 7.7.
 module run_off
    use kinds, only: wp
-   use boundary_conditions, only: acts, force_of
+   use boundary_conditions, only: acts
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t, factor_at, factors_of, gravity_at, value_at, load_t, now_in
@@ -12,7 +12,7 @@ module run_off
    use scene_parts, only: place_of
    use scene_term, only: scene_term_t
    use sparsity_pattern, only: entry_of
-   use texts, only: short
+   use texts, only: place_text, short
    use unknown_fields, only: AT_P_W, AT_P_C
    use warnings, only: print_warning
    implicit none (type, external)
@@ -123,7 +123,7 @@ contains
       do i = 1, size(problem%model%loads)
          associate (one => problem%model%loads(i))
             if (one%limits .and. one%in_stage(problem%at%stage)) &
-               rain = rain + force_of(one, factor_at(problem%model, one%amplitude, time))
+               rain = rain + factor_at(problem%model, one%amplitude, time)*one%vector
          end associate
       end do
    end function rain_at
@@ -244,7 +244,7 @@ contains
 
       if (self%stuck == 0) return
       associate (x => problem%domain%mesh%x(:, problem%dofs%node(self%stuck)))
-         call print_warning(now_in(problem)//'the node at ('//short(x(1))//', '//short(x(2))//') m of a seepage '// &
+         call print_warning(now_in(problem)//'the node at '//place_text(x)//' of a seepage '// &
             'face, or under rain, left its limit three times within the step, and keeps it although water enters '// &
             'there. Shorten the steps or refine the mesh there.', once='inflow at a limit')
       end associate
