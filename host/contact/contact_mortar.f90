@@ -99,8 +99,8 @@ contains
       logical, intent(in) :: free(2)           !< The master's surface ends at the start, the end of its edge.
       type(overlap_t), intent(out) :: overlap
       type(edge_t) :: slave
-      real(wp) :: chord_s(2), chord_m(2), foot(3), cut(2), lower, upper
-      integer :: where_it_is(3), node(2), cuts, j
+      real(wp) :: chord_s(2), chord_m(2), foot(3), lower, upper, s
+      integer :: where_it_is(3), node(2), j
 
       chord_s = x(:, 2) - x(:, 1)
       chord_m = x(:, 5) - x(:, 4)
@@ -115,47 +115,26 @@ contains
       if (upper - lower <= SAME_PLACE) return
 
       ! A cut next to another end is left out: a segment without length still moves, it must not be there at all.
-      cuts = 0
-      if (between(0.0_wp, lower, upper)) then
-         cuts = 1
-         cut(1) = 0.0_wp
-         node(1) = 0
-      end if
-      if (where_it_is(3) == INSIDE .and. between(foot(3), lower, upper)) then
-         if (cuts == 0) then
-            cuts = 1
-            cut(1) = foot(3)
-            node(1) = 3
-         else if (between(foot(3), lower, 0.0_wp)) then
-            cuts = 2
-            cut = [foot(3), 0.0_wp]
-            node = [3, 0]
-         else if (between(foot(3), 0.0_wp, upper)) then
-            cuts = 2
-            cut = [0.0_wp, foot(3)]
-            node = [0, 3]
-         end if
-      end if
-      overlap%segments = cuts + 1
+      node = merge([3, 0], [0, 3], foot(3) < 0.0_wp)
+      overlap%segments = 1
       overlap%end(1) = lower
-      overlap%end(2:cuts + 1) = cut(:cuts)
-      overlap%end(cuts + 2) = upper
+      do j = 1, 2
+         s = merge(foot(3), 0.0_wp, node(j) == 3)
+         if (node(j) == 3 .and. (where_it_is(3) /= INSIDE .or. abs(s) <= SAME_PLACE)) cycle
+         if (.not. (s - lower > SAME_PLACE .and. upper - s > SAME_PLACE)) cycle
+         overlap%segments = overlap%segments + 1
+         overlap%end(overlap%segments) = s
+         overlap%follows(overlap%segments) = node(j)
+      end do
+      overlap%end(overlap%segments + 1) = upper
       ! On a vertex of the slave the next pair goes on where this one ends, and their changes cancel; where the master
       ! itself ends nobody goes on.
       overlap%follows(1) = merge(2, 0, where_it_is(2) == INSIDE .and. (free(2) .or. lower > -1.0_wp))
-      overlap%follows(2:cuts + 1) = node(:cuts)
-      overlap%follows(cuts + 2) = merge(1, 0, where_it_is(1) == INSIDE .and. (free(1) .or. upper < 1.0_wp))
-      do j = 1, cuts + 2
+      overlap%follows(overlap%segments + 1) = merge(1, 0, where_it_is(1) == INSIDE .and. (free(1) .or. upper < 1.0_wp))
+      do j = 1, overlap%segments + 1
          if (overlap%follows(j) > 0) overlap%d_end(:, j) = end_slope(x, slave, overlap%follows(j), overlap%end(j))
       end do
    end subroutine find_overlap
-
-   !> Whether a cut leaves a segment to both sides.
-   pure logical function between(s, lower, upper)
-      real(wp), intent(in) :: s, lower, upper
-
-      between = s - lower > SAME_PLACE .and. upper - s > SAME_PLACE
-   end function between
 
    !> Differentiates the foot s of master node j, where (x_j - x(s)).t(s) = 0, by the 12 local coordinates [1/m]:
    !> docs/theory/contact.md section 3.2.

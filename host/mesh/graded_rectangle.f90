@@ -10,51 +10,51 @@ module graded_rectangle
    use triangle_mesh, only: mesh_t, add_group
    implicit none (type, external)
    private
-   public :: graded_mesh
+   public :: graded_mesh, blocks_t
+
+   !> Breaks along an axis, cells between them, and the ratios of their sizes.
+   type :: blocks_t
+      real(wp), allocatable :: breaks(:)   !< (pieces + 1) Ascending [m].
+      integer, allocatable :: cells(:)     !< (pieces)
+      real(wp), allocatable :: ratio(:)    !< (pieces) Size of a cell over that of the one before it, > 0.
+   end type blocks_t
 contains
-   !> Coordinates of the cell ends between breaks; `ratio` is the size of a cell over that of the one before it.
-   pure function graded_axis(breaks, cells, ratio) result(x)
-      real(wp), intent(in) :: breaks(:)        !< Ascending [m]. (pieces + 1)
-      integer, intent(in) :: cells(:)          !< Per piece, size(breaks) - 1 of them. (pieces)
-      real(wp), intent(in) :: ratio(:)         !< Per piece, > 0. (pieces)
-      real(wp), allocatable :: x(:)   !< (sum(cells) + 1) [m]
-      real(wp) :: total, sum_so_far
+   !> Coordinates of the cell ends between breaks [m]. (cells + 1)
+   pure function graded_axis(blocks) result(x)
+      type(blocks_t), intent(in) :: blocks
+      real(wp) :: x(sum(blocks%cells) + 1), upto
       integer :: i, k, at
 
-      allocate (x(sum(cells) + 1))
-      x(1) = breaks(1)
       at = 1
-      do i = 1, size(cells)
-         total = 0.0_wp
-         do k = 1, cells(i)
-            total = total + ratio(i)**(k - 1)
+      associate (breaks => blocks%breaks, ratio => blocks%ratio)
+         x(1) = breaks(1)
+         do i = 1, size(blocks%cells)
+            upto = 0.0_wp
+            do k = 1, blocks%cells(i)
+               upto = upto + ratio(i)**(k - 1)
+               x(at + k) = upto
+            end do
+            x(at + 1:at + blocks%cells(i)) = breaks(i) + (breaks(i + 1) - breaks(i))*x(at + 1:at + blocks%cells(i))/upto
+            at = at + blocks%cells(i)
+            x(at) = breaks(i + 1)
          end do
-         sum_so_far = 0.0_wp
-         do k = 1, cells(i)
-            sum_so_far = sum_so_far + ratio(i)**(k - 1)
-            x(at + k) = breaks(i) + (breaks(i + 1) - breaks(i))*sum_so_far/total
-         end do
-         at = at + cells(i)
-         x(at) = breaks(i + 1)
-      end do
+      end associate
    end function graded_axis
 
-   !> Meshes a rectangle by breaks [m], cells between two breaks and the ratio of neighbouring cells, along r and z.
-   !> Extents are as those of graded_axis.
-   subroutine graded_mesh(r_breaks, r_cells, r_ratio, z_breaks, z_cells, z_ratio, mesh)
-      real(wp), intent(in) :: r_breaks(:), r_ratio(:), z_breaks(:), z_ratio(:)
-      integer, intent(in) :: r_cells(:), z_cells(:)     !< (pieces along r, along z)
+   !> Meshes a rectangle by its blocks along r and z.
+   subroutine graded_mesh(r_blocks, z_blocks, mesh)
+      type(blocks_t), intent(in) :: r_blocks, z_blocks
       type(mesh_t), intent(out) :: mesh
       real(wp), allocatable :: r(:), z(:)
       integer, allocatable :: r_piece(:), z_piece(:)
       integer :: nr, nz, i, j, k
 
-      r = graded_axis(r_breaks, r_cells, r_ratio)
-      z = graded_axis(z_breaks, z_cells, z_ratio)
+      r = graded_axis(r_blocks)
+      z = graded_axis(z_blocks)
       nr = size(r) - 1
       nz = size(z) - 1
-      r_piece = [((i, k=1, r_cells(i)), i=1, size(r_cells))]
-      z_piece = [((i, k=1, z_cells(i)), i=1, size(z_cells))]
+      r_piece = [((i, k=1, r_blocks%cells(i)), i=1, size(r_blocks%cells))]
+      z_piece = [((i, k=1, z_blocks%cells(i)), i=1, size(z_blocks%cells))]
       allocate (mesh%x(2, (2*nr + 1)*(2*nz + 1)), mesh%t6(6, 2*nr*nz))
       do j = 0, 2*nz
          do i = 0, 2*nr
@@ -109,8 +109,8 @@ contains
 
          cell = [(c, c=1, 2*nr*nz)]
          call add_group(mesh, 'all', cell, none, [integer ::])
-         do q = 1, size(z_cells)
-            do p = 1, size(r_cells)
+         do q = 1, size(z_blocks%cells)
+            do p = 1, size(r_blocks%cells)
                inside = [(r_piece(mod((c - 1)/2, nr) + 1) == p .and. z_piece((c - 1)/2/nr + 1) == q, c=1, 2*nr*nz)]
                call add_group(mesh, 'block_'//whole(p)//'_'//whole(q), pack(cell, inside), none, [integer ::])
             end do

@@ -7,7 +7,7 @@ module mesh_builder
    use faults, only: fault_t, raise, at_line, EXIT_INPUT
    use files, only: beside
    use gmsh_reader, only: read_gmsh
-   use graded_rectangle, only: graded_mesh
+   use graded_rectangle, only: graded_mesh, blocks_t
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
    use model_types, only: model_t
@@ -20,12 +20,6 @@ module mesh_builder
 
    integer, parameter :: MOST_SPLITS = 3
    real(wp), parameter :: MOST_ELEMENTS = 5.0e6_wp   !< Of a built-in mesh: entries of the matrix stay countable.
-
-   !> Breaks along an axis, cells between them, and the ratios of their sizes.
-   type :: blocks_t
-      real(wp), allocatable :: breaks(:), ratio(:)
-      integer, allocatable :: cells(:)
-   end type blocks_t
 contains
    !> Builds the &mesh. Fault EXIT_INPUT: a mesh of a file cannot be had so fine. EXIT_MESH: as of read_gmsh; breaks
    !> that do not ascend or do not fit cells and ratios; more than MOST_ELEMENTS.
@@ -120,7 +114,7 @@ contains
                     short(MOST_ELEMENTS)//'.')
          return
       end if
-      call graded_mesh(r%breaks, r%cells, r%ratio, z%breaks, z%cells, z%ratio, mesh)
+      call graded_mesh(r, z, mesh)
    end subroutine make_blocks
 
    pure logical function fits(blocks)

@@ -10,6 +10,7 @@ module pressure_alarm
    use porous_domain, only: is_present, COUPLED
    use run_state, only: run_t
    use texts, only: place_text, short
+   use triangle_mesh, only: sides_of
    use unknown_fields, only: AT_P_W
    implicit none (type, external)
    private
@@ -111,53 +112,49 @@ contains
       real(wp), intent(in) :: x(:, :)     !< (2, nodes) [m]
       integer, intent(in) :: t6(:, :)     !< (6, elements)
       type(lines_t) :: lines
-      integer, allocatable :: first(:), sides(:, :)   !< Sides of every node: (middle, end; sides of all nodes).
+      integer :: sides(3, 6*size(t6, 2))   !< From both their ends: node, end, middle.
+      integer :: first(size(x, 2)), next(6*size(t6, 2))   !< First side of a node, the next one there; 0: there is none.
+      integer :: sides_at(size(x, 2)), c, i, j, n
       logical :: known(size(x, 2))
       real(wp) :: one(2), other(2)
-      integer :: pass, c, i, j, n
 
-      ! Sides of every corner, each once: a middle belongs to one side.
-      allocate (first(size(x, 2) + 1), source=0)
-      allocate (sides(2, 6*size(t6, 2)))
-      do pass = 1, 2
-         known = .false.
-         do i = 1, size(t6, 2)
-            do j = 1, 3
-               associate (a => t6(j, i), b => t6(mod(j, 3) + 1, i), middle => t6(j + 3, i))
-                  if (known(middle)) cycle
-                  known(middle) = .true.
-                  if (pass == 2) sides(:, first([a, b])) = reshape([middle, b, middle, a], [2, 2])
-                  first([a, b]) = first([a, b]) + 1
-               end associate
-            end do
-         end do
-         ! Counts become places, and places that have been filled become counts again.
-         if (pass == 2) exit
-         n = 1
-         do c = 1, size(first)
-            i = first(c)
-            first(c) = n
-            n = n + i
+      n = 3*size(t6, 2)
+      sides(:, :n) = sides_of(t6)
+      sides(:, n + 1:) = sides([2, 1, 3], :n)
+      first = 0
+      known = .false.
+      sides_at = 0
+      ! Each side once: a middle belongs to one side.
+      do i = n, 1, -1
+         if (known(sides(3, i))) cycle
+         known(sides(3, i)) = .true.
+         do j = i, i + n, n
+            next(j) = first(sides(1, j))
+            first(sides(1, j)) = j
+            sides_at(sides(1, j)) = sides_at(sides(1, j)) + 1
          end do
       end do
-      first = eoshift(first, -1, boundary=1)
-      do pass = 1, 2
-         n = 0
-         do c = 1, size(x, 2)
-            do i = first(c), first(c + 1) - 1
-               do j = i + 1, first(c + 1) - 1
-                  one = x(:, sides(1, i)) - x(:, c)
-                  other = x(:, sides(1, j)) - x(:, c)
-                  if (dot_product(one, other) > STRAIGHT*norm2(one)*norm2(other)) cycle
+      allocate (lines%nodes(5, sum(sides_at*(sides_at - 1))/2), lines%share(sum(sides_at*(sides_at - 1))/2))
+      n = 0
+      do c = 1, size(x, 2)
+         i = first(c)
+         do while (i > 0)
+            one = x(:, sides(3, i)) - x(:, c)
+            j = next(i)
+            do while (j > 0)
+               other = x(:, sides(3, j)) - x(:, c)
+               if (dot_product(one, other) <= STRAIGHT*norm2(one)*norm2(other)) then
                   n = n + 1
-                  if (pass == 1) cycle
-                  lines%nodes(:, n) = [sides(2, i), sides(1, i), c, sides(1, j), sides(2, j)]
+                  lines%nodes(:, n) = [sides(2:3, i), c, sides(3:2:-1, j)]
                   lines%share(n) = norm2(other)/(norm2(one) + norm2(other))
-               end do
+               end if
+               j = next(j)
             end do
+            i = next(i)
          end do
-         if (pass == 1) allocate (lines%nodes(5, n), lines%share(n))
       end do
+      lines%nodes = lines%nodes(:, :n)
+      lines%share = lines%share(:n)
    end function find_lines
 
    !> Finds the corner at which pressures alternate most, and the least distance of it and of both middles beside it
