@@ -36,15 +36,13 @@ contains
       integer, intent(in) :: n, first   !< Number of points; the first of them in the mesh.
       type(response_t), intent(in) :: answer   !< With tangent.
       type(slopes_t), intent(inout) :: slopes
-      integer :: g
 
-      do g = 1, n
-         associate (p => first + g - 1)
-            slopes%strain(:, :, p) = answer%dsig_deps(:PLANE, :PLANE, g)
-            slopes%suction(:, p) = answer%dsig_dpc(:PLANE, g)
-            slopes%water(:, p) = [answer%dsw_dev(g), answer%dsw_dpc(g)]
-         end associate
-      end do
+      associate (last => first + n - 1)
+         slopes%strain(:, :, first:last) = answer%dsig_deps(:PLANE, :PLANE, :n)
+         slopes%suction(:, first:last) = answer%dsig_dpc(:PLANE, :n)
+         slopes%water(1, first:last) = answer%dsw_dev(:n)
+         slopes%water(2, first:last) = answer%dsw_dpc(:n)
+      end associate
    end subroutine keep_slopes
 
    !> Takes the answer that straight lines along the slopes give; the void ratio is exact. docs/theory/host.md section
@@ -68,9 +66,9 @@ contains
             answer%void_ratio(g) = swollen(e(g), volume)
             answer%s_w(g) = max(0.0_wp, min(1.0_wp, s_w(g) + slopes%water(1, p)*volume &
                                             + slopes%water(2, p)*d_suction(g)))
-            call slopes_of(p, g, slopes, answer)
          end associate
       end do
+      call give_slopes(n, first, slopes, answer)
    end subroutine follow_slopes
 
    !> Takes the answer that a pass by the material left in the state at the end of the step, with the slopes it kept.
@@ -80,24 +78,23 @@ contains
       type(slopes_t), intent(in) :: slopes
       real(wp), intent(in) :: stress(:, :), e(:), s_w(:)   !< (6, n) [kPa], (n), (n) [-].
       type(response_t), intent(inout) :: answer
-      integer :: g
 
-      do g = 1, n
-         answer%stress(:, g) = stress(:, g)
-         answer%void_ratio(g) = e(g)
-         answer%s_w(g) = s_w(g)
-         call slopes_of(first + g - 1, g, slopes, answer)
-      end do
+      answer%stress(:, :n) = stress
+      answer%void_ratio(:n) = e
+      answer%s_w(:n) = s_w
+      call give_slopes(n, first, slopes, answer)
    end subroutine kept_response
 
-   pure subroutine slopes_of(p, g, slopes, answer)
-      integer, intent(in) :: p, g
+   pure subroutine give_slopes(n, first, slopes, answer)
+      integer, intent(in) :: n, first
       type(slopes_t), intent(in) :: slopes
       type(response_t), intent(inout) :: answer
 
-      answer%dsig_deps(:PLANE, :PLANE, g) = slopes%strain(:, :, p)
-      answer%dsig_dpc(:PLANE, g) = slopes%suction(:, p)
-      answer%dsw_dev(g) = slopes%water(1, p)
-      answer%dsw_dpc(g) = slopes%water(2, p)
-   end subroutine slopes_of
+      associate (last => first + n - 1)
+         answer%dsig_deps(:PLANE, :PLANE, :n) = slopes%strain(:, :, first:last)
+         answer%dsig_dpc(:PLANE, :n) = slopes%suction(:, first:last)
+         answer%dsw_dev(:n) = slopes%water(1, first:last)
+         answer%dsw_dpc(:n) = slopes%water(2, first:last)
+      end associate
+   end subroutine give_slopes
 end module carried_slopes

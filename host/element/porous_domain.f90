@@ -284,14 +284,10 @@ contains
       nodes = size(domain%mesh%x, 2)
       points = domain%rule*size(domain%mesh%t6, 2)
       state%gravity = domain%gravity
-      allocate (state%x(FIELDS, nodes), source=0.0_wp)
-      allocate (state%v(FIELDS, nodes), source=0.0_wp)
-      allocate (state%a(2, nodes), source=0.0_wp)
-      allocate (state%stress(6, points), source=0.0_wp)
+      allocate (state%x(FIELDS, nodes), state%v(FIELDS, nodes), state%a(2, nodes), source=0.0_wp)
+      allocate (state%stress(6, points), state%e(points), state%s_rate(points), source=0.0_wp)
       allocate (state%state(domain%before_state(size(domain%before_state))), source=0.0_wp)
-      allocate (state%e(points), source=0.0_wp)
       allocate (state%s(points), source=1.0_wp)
-      allocate (state%s_rate(points), source=0.0_wp)
       do e = 1, size(domain%mesh%t6, 2)
          state%e((e - 1)*domain%rule + 1:e*domain%rule) = domain%regions(domain%region_of(e))%void_ratio
       end do

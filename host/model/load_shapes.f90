@@ -79,41 +79,36 @@ contains
       type(load_t), intent(in) :: load
       real(wp), intent(inout) :: vector(:)
       type(edge_point_t) :: points(PER_EDGE)
-      real(wp) :: value
-      integer :: g, i
+      real(wp) :: along(FIELDS), extent   !< What a value acts on: shares of the extent of the point [m or m2].
+      integer :: g, i, f
 
       points = points_of_edge(model%domain, edge)
       do g = 1, PER_EDGE
          associate (n => points(g)%n, m => points(g)%m, tangent => points(g)%tangent, area => points(g)%area, &
                     ring => points(g)%ring)
-            value = value_at(load, points(g)%x(2))
+            along = 0.0_wp
+            extent = merge(ring, area, load%kind == LOAD_PRESSURE .or. load%falls)
+            select case (load%kind)
+            case (LOAD_PRESSURE)
+               along(AT_U_R:AT_U_Z) = [-tangent(2), tangent(1)]
+            case (LOAD_SHEAR_R)
+               along(AT_U_R) = 1.0_wp
+            case (LOAD_SHEAR_Z)
+               along(AT_U_Z) = 1.0_wp
+            case (LOAD_WATER)
+               along(AT_P_W) = merge(max(0.0_wp, -tangent(1)), 1.0_wp, load%falls)
+            case (LOAD_AIR)
+               along(AT_P_W:AT_P_C) = 1.0_wp
+            end select
             do i = 1, 3
-               select case (load%kind)
-               case (LOAD_PRESSURE)
-                  call add(AT_U_R, i, -n(i)*tangent(2)*ring*value)
-                  call add(AT_U_Z, i, n(i)*tangent(1)*ring*value)
-               case (LOAD_SHEAR_R)
-                  call add(AT_U_R, i, n(i)*area*value)
-               case (LOAD_SHEAR_Z)
-                  call add(AT_U_Z, i, n(i)*area*value)
-               case (LOAD_WATER)
-                  if (load%falls) call add(AT_P_W, i, m(i)*max(0.0_wp, -tangent(1))*ring*value)
-                  if (.not. load%falls) call add(AT_P_W, i, m(i)*area*value)
-               case (LOAD_AIR)
-                  call add(AT_P_W, i, m(i)*area*value)
-                  call add(AT_P_C, i, m(i)*area*value)
-               end select
+               do f = 1, FIELDS
+                  associate (at => model%dofs%of(f, edge(i)))
+                     if (at > 0) vector(at) = vector(at) + merge(n(i), m(i), f <= DISPLACEMENTS)*along(f)*extent &
+                                                           *value_at(load, points(g)%x(2))
+                  end associate
+               end do
             end do
          end associate
       end do
-   contains
-      subroutine add(field, i, force)
-         integer, intent(in) :: field, i
-         real(wp), intent(in) :: force   !< [kN], or inflow [m3/s].
-
-         associate (place => model%dofs%of(field, edge(i)))
-            if (place > 0) vector(place) = vector(place) + force
-         end associate
-      end subroutine add
    end subroutine add_edge
 end module load_shapes
