@@ -81,11 +81,12 @@ contains
       type(contact_result_t) :: result
 
       result%nodal_forces_t = new_forces(2*(geometry%slave_nodes + geometry%master_nodes))
-      allocate (result%weight(geometry%slave_nodes), result%whole(geometry%slave_nodes), &
-                result%gap(geometry%slave_nodes), result%pressure(geometry%slave_nodes), source=0.0_wp)
-      allocate (result%active(geometry%slave_nodes), source=.false.)
-      allocate (result%side(geometry%slave_nodes), source=0)
-      allocate (result%slip(geometry%slave_nodes), result%traction(geometry%slave_nodes), source=0.0_wp)
+      associate (n => geometry%slave_nodes)
+         allocate (result%weight(n), result%whole(n), result%gap(n), result%pressure(n), result%slip(n), &
+                   result%traction(n), source=0.0_wp)
+         allocate (result%active(n), source=.false.)
+         allocate (result%side(n), source=0)
+      end associate
    end function new_result
 
    !> Evaluates everything for current coordinates. If the status is not CONTACT_OK the answer is of no use.

@@ -2,13 +2,14 @@
 !> Numbers of the unknowns: one per node and field that the scene has, shared where nodes move as one rigid body, and
 !> room for unknowns that belong to no node.
 module degrees_of_freedom
+   use kinds, only: wp
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_R, AT_U_Z, AT_P_W, AT_P_C
    use element_equations, only: element_size
    use element_sums, only: LAST_U
    use porous_domain, only: domain_t
    implicit none (type, external)
    private
-   public :: dofs_t, number_unknowns, tie_pairs
+   public :: dofs_t, number_unknowns, tie_pairs, at_nodes
 
    type :: dofs_t
       integer :: n = 0                        !< Unknowns.
@@ -98,4 +99,19 @@ contains
          end do
       end do
    end subroutine tie_pairs
+
+   !> Puts values of the unknowns at their nodes, 0 where a node has none. (FIELDS, nodes)
+   pure function at_nodes(dofs, values) result(x)
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: values(:)   !< (unknowns)
+      real(wp) :: x(FIELDS, size(dofs%of, 2))
+      integer :: i, f
+
+      x = 0.0_wp
+      do i = 1, size(x, 2)
+         do f = 1, FIELDS
+            if (dofs%of(f, i) > 0) x(f, i) = values(dofs%of(f, i))
+         end do
+      end do
+   end function at_nodes
 end module degrees_of_freedom

@@ -22,21 +22,14 @@ contains
    subroutine add_centers(domain)
       type(domain_t), intent(inout) :: domain
       logical :: closed(size(domain%region_of))   !< Whether the fluids of an element stay in it.
-      real(wp), allocatable :: x(:, :)
-      integer :: e, n
+      integer :: e
 
-      closed = [(domain%regions(domain%region_of(e))%drainage == UNDRAINED, e=1, size(closed))]
-      n = size(domain%mesh%x, 2)
-      allocate (domain%center(size(closed)), source=0)
-      allocate (x(2, n + count(closed)))
-      x(:, :n) = domain%mesh%x
-      do e = 1, size(closed)
-         if (.not. closed(e)) cycle
-         n = n + 1
-         domain%center(e) = n
-         x(:, n) = sum(domain%mesh%x(:, domain%mesh%t6(:3, e)), dim=2)/3
-      end do
-      call move_alloc(x, domain%mesh%x)
+      closed = domain%regions(domain%region_of)%drainage == UNDRAINED
+      associate (x => domain%mesh%x, corners => domain%mesh%t6(:3, pack([(e, e=1, size(closed))], closed)))
+         domain%center = unpack([(size(x, 2) + e, e=1, size(corners, 2))], closed, 0)
+         domain%mesh%x = reshape([x, (sum(x(:, corners(:, e)), dim=2)/3, e=1, size(corners, 2))], &
+                                 [2, size(x, 2) + size(corners, 2)])
+      end associate
    end subroutine add_centers
 
    !> Sets p_w and p_c of every node as the &initial say, of several the last one [kPa]; 0 in plates. Nodes of the

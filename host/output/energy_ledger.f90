@@ -5,6 +5,7 @@
 !> docs/theory/host.md section 9.
 module energy_ledger
    use archive, only: archive_t
+   use degrees_of_freedom, only: at_nodes
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use springs, only: work_of_linear_forces
@@ -127,17 +128,10 @@ contains
       type(run_t), intent(in) :: run
       real(wp), intent(in) :: change(:, :)   !< (2, nodes) of all [m]
       real(wp) :: held(DISPLACEMENTS, size(change, 2))
-      integer :: f, k
 
-      held = 0.0_wp
-      do k = 1, size(change, 2)
-         do f = 1, DISPLACEMENTS
-            associate (at => run%dofs%of(f, k))
-               if (at == 0) cycle
-               if (run%constraint%fixed(at)) held(f, k) = change(f, k)
-            end associate
-         end do
-      end do
+      associate (fixed => at_nodes(run%dofs, merge(1.0_wp, 0.0_wp, run%constraint%fixed)))
+         held = merge(change, 0.0_wp, fixed(:DISPLACEMENTS, :) > 0.0_wp)
+      end associate
    end function moved_by_supports
 
    !> Books the forces on nodes: loads, contacts, and the inertia of bodies that supports move.

@@ -80,10 +80,7 @@ contains
       type(run_t), intent(in) :: run
       integer :: i
 
-      depends_on_path = .false.
-      do i = 1, size(run%domain%regions)
-         depends_on_path = depends_on_path .or. .not. run%domain%regions(i)%law%has_energy
-      end do
+      depends_on_path = .not. all([(run%domain%regions(i)%law%has_energy, i=1, size(run%domain%regions))])
    end function depends_on_path
 
    subroutine sudden(time, run)

@@ -7,7 +7,7 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use convergence, only: measure, good_enough, note_stagnation, linear_tolerance, rounding_in, water_of, MOST_IN_VAIN
-   use degrees_of_freedom, only: dofs_t
+   use degrees_of_freedom, only: dofs_t, at_nodes
    use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
@@ -193,10 +193,7 @@ contains
       type(region_t), intent(in) :: regions(:)
       integer :: i
 
-      roughness = 0.0_wp
-      do i = 1, size(regions)
-         roughness = max(roughness, regions(i)%law%tolerance)
-      end do
+      roughness = maxval([0.0_wp, (regions(i)%law%tolerance, i=1, size(regions))])
    end function roughness
 
    !> Whether stresses are integrated to less than the material has. docs/theory/host.md section 5.1.
@@ -204,10 +201,7 @@ contains
       type(region_t), intent(in) :: regions(:)
       integer :: i
 
-      is_tight = .false.
-      do i = 1, size(regions)
-         is_tight = is_tight .or. regions(i)%law%tolerance < 0.5_wp*regions(i)%stress_tolerance
-      end do
+      is_tight = any([(regions(i)%law%tolerance < 0.5_wp*regions(i)%stress_tolerance, i=1, size(regions))])
    end function is_tight
 
    !> Makes the equations of a scheme between both states, of contacts, elements and what acts beside them: the residual
@@ -464,7 +458,7 @@ contains
       type(solution_t), intent(inout) :: solution
       type(constraint_t) :: held
       type(iterate_t) :: at
-      integer :: status, i, f
+      integer :: status
 
       associate (state => solution%state, work => solution%next, log => solution%log, &
                  constraint => solution%constraint, assembly => solution%assembly)
@@ -489,11 +483,9 @@ contains
             log%outcome = outcome_of(status)
             return
          end if
-         do i = 1, size(state%a, 2)
-            do f = 1, DISPLACEMENTS
-               if (solution%dofs%of(f, i) > 0) state%a(f, i) = at%dx(solution%dofs%of(f, i))
-            end do
-         end do
+         associate (a => at_nodes(solution%dofs, at%dx))
+            state%a = a(:DISPLACEMENTS, :)
+         end associate
          work%a = state%a
       end associate
    end subroutine start_accelerations
@@ -551,21 +543,13 @@ contains
       real(wp), intent(inout) :: x(:, :)
       real(wp), intent(out) :: share             !< |dx|/|x| of the worst field [-].
       real(wp), intent(out) :: largest(FIELDS)   !< |dx| of every field [m, kPa].
-      real(wp) :: change(FIELDS), total(FIELDS)
-      integer :: f, i
+      real(wp) :: change(FIELDS, size(x, 2)), total(FIELDS)
 
-      change = 0.0_wp
-      largest = 0.0_wp
-      do i = 1, size(x, 2)
-         do f = 1, FIELDS
-            if (dofs%of(f, i) == 0) cycle
-            x(f, i) = x(f, i) + dx(dofs%of(f, i))
-            change(f) = change(f) + dx(dofs%of(f, i))**2
-            largest(f) = max(largest(f), abs(dx(dofs%of(f, i))))
-         end do
-      end do
+      change = at_nodes(dofs, dx)
+      x = x + change
+      largest = maxval(abs(change), dim=2)
       total = norm2(x, dim=2)
-      share = maxval(sqrt(change)/max(total, tiny(1.0_wp)), mask=total > 0.0_wp)
+      share = maxval(sqrt(sum(change**2, dim=2))/max(total, tiny(1.0_wp)), mask=total > 0.0_wp)
       if (.not. any(total > 0.0_wp)) share = 0.0_wp
    end subroutine add_correction
 end module newton_step

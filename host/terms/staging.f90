@@ -165,17 +165,12 @@ contains
       type(dofs_t), intent(in) :: dofs
       logical, intent(in) :: present(:)   !< (elements)
       logical, allocatable, intent(out) :: absent(:)
-      integer :: e, i, pass
 
       allocate (absent(dofs%n), source=.false.)
-      do pass = 1, 2
-         do e = 1, size(present)
-            if (present(e) .neqv. pass == 2) cycle
-            do i = 1, size(dofs%element, 1)
-               if (dofs%element(i, e) > 0) absent(dofs%element(i, e)) = pass == 1
-            end do
-         end do
-      end do
+      associate (own => dofs%element, there => spread(present, 1, size(dofs%element, 1)))
+         absent(pack(own, own > 0)) = .true.
+         absent(pack(own, own > 0 .and. there)) = .false.
+      end associate
    end subroutine mark_absent
 
    !> What is left of the forces that hold up fades over the stage, and the weight of what joins grows.
