@@ -9,7 +9,7 @@ module degrees_of_freedom
    use porous_domain, only: domain_t
    implicit none (type, external)
    private
-   public :: dofs_t, number_unknowns, tie_pairs, at_nodes
+   public :: dofs_t, number_unknowns, tie_pairs, at_nodes, of_unknowns
 
    type :: dofs_t
       integer :: n = 0                        !< Unknowns.
@@ -114,4 +114,14 @@ contains
          end do
       end do
    end function at_nodes
+
+   !> Takes the values of the unknowns from their nodes. (unknowns)
+   pure function of_unknowns(dofs, x) result(values)
+      type(dofs_t), intent(in) :: dofs
+      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes)
+      real(wp) :: values(dofs%n)
+      integer :: i
+
+      values = [(x(dofs%field(i), dofs%node(i)), i=1, dofs%n)]
+   end function of_unknowns
 end module degrees_of_freedom

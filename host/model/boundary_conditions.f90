@@ -3,6 +3,7 @@
 !> the masses of plates.
 module boundary_conditions
    use acting_places, only: are_on_axis
+   use degrees_of_freedom, only: of_unknowns
    use kinds, only: wp
    use generalised_alpha, only: scheme_t, make_scheme
    use model_types, only: model_t, problem_t, factor_at, gravity_at, value_at, fix_t, plate_t, unknowns_of, SPACINGS
@@ -81,7 +82,7 @@ contains
    !> Completes what follows from the prescribed values of supports and terms.
    subroutine complete_constraint(problem)
       type(problem_t), intent(inout) :: problem
-      integer :: i, node
+      integer :: node
 
       associate (dofs => problem%model%dofs, constraint => problem%constraint)
          ! Air pressure and one of the others: then the third is known too.
@@ -100,11 +101,10 @@ contains
             end associate
          end do
          if (problem%stage%has_rates) return
-         do i = 1, dofs%n
-            if (dofs%field(i) <= DISPLACEMENTS) cycle
-            constraint%fixed(i) = .true.
-            constraint%target(i) = problem%at%x_start(dofs%field(i), dofs%node(i))
-         end do
+         where (dofs%field > DISPLACEMENTS)
+            constraint%fixed = .true.
+            constraint%target = of_unknowns(dofs, problem%at%x_start)
+         end where
          constraint%air = .false.
       end associate
    end subroutine complete_constraint

@@ -5,7 +5,7 @@
 !> docs/theory/host.md section 9.
 module energy_ledger
    use archive, only: archive_t
-   use degrees_of_freedom, only: at_nodes
+   use degrees_of_freedom, only: at_nodes, of_unknowns
    use kinds, only: wp
    use unknown_fields, only: DISPLACEMENTS, AT_P_W, AT_P_C
    use springs, only: work_of_linear_forces
@@ -293,18 +293,12 @@ contains
       type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
       real(wp) :: work
-      integer :: i
 
       ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
                                 ledger%kinetic_0, -ledger%skeleton)
-      work = 0.0_wp
-      do i = 1, run%dofs%n
-         associate (f => run%dofs%field(i), node => run%dofs%node(i))
-            if (f <= DISPLACEMENTS) work = work + run%assembly%scale(i)*abs(run%next%x(f, node) - run%state%x(f, node))
-         end associate
-      end do
       ! A residual may be that share of the forces, whose magnitudes are the scale.
-      work = run%stage%tolerance*work
+      work = run%stage%tolerance*sum(run%assembly%scale*abs(of_unknowns(run%dofs, run%next%x - run%state%x)), &
+                                     mask=run%dofs%field <= DISPLACEMENTS)
       ! Before any load has done more than that, such steps add up: nothing tells their energy from none.
       if (ledger%largest_work < ledger%tolerated + work) then
          ledger%tolerated = ledger%tolerated + work

@@ -9,6 +9,7 @@
 module step_landings
    use kinds, only: wp
    use boundary_conditions, only: load_at
+   use degrees_of_freedom, only: of_unknowns
    use history_shapes, only: kinks_of
    use model_types, only: SPACINGS
    use run_state, only: run_t
@@ -175,8 +176,7 @@ contains
    function begins_suddenly(run) result(at_once)
       type(run_t), intent(in) :: run   !< With what the stage prescribes at its start.
       logical :: at_once
-      real(wp) :: load(run%dofs%n), before(run%dofs%n)
-      integer :: i, k
+      real(wp) :: load(run%dofs%n), before(run%dofs%n), largest(FIELDS)
 
       associate (x => run%state%x, c => run%constraint, number => run%at%stage)
          load = load_at(run%model, number, run%state%time)
@@ -185,15 +185,11 @@ contains
          at_once = norm2(load - before) > SAME*norm2(load)
          if (number == 1) at_once = at_once .or. abs(run%state%gravity) > 0.0_wp .or. &
             any(abs(x(AT_P_W:AT_P_C, :) - spread(x(AT_P_W:AT_P_C, 1), 2, size(x, 2))) > SAME*maxval(abs(x(AT_P_W:, :))))
-         do i = 1, run%dofs%n
-            associate (f => run%dofs%field(i), node => run%dofs%node(i))
-               if (c%fixed(i)) at_once = at_once .or. abs(c%target(i) - x(f, node)) > SAME*maxval(abs(x(f, :)))
-            end associate
-         end do
-         do k = 1, size(c%air)
-            if (c%air(k)) at_once = at_once .or. &
-               abs(c%air_target(k) - x(AT_P_W, k) - x(AT_P_C, k)) > SAME*maxval(abs(x(AT_P_W:, :)))
-         end do
+         largest = maxval(abs(x), dim=2)
+         at_once = at_once .or. any(c%fixed .and. &
+                                    abs(c%target - of_unknowns(run%dofs, x)) > SAME*largest(run%dofs%field))
+         at_once = at_once .or. any(c%air .and. abs(c%air_target - x(AT_P_W, :) - x(AT_P_C, :)) > &
+                                                SAME*maxval(largest(AT_P_W:)))
       end associate
    end function begins_suddenly
 

@@ -7,7 +7,7 @@ module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use convergence, only: measure, good_enough, note_stagnation, linear_tolerance, rounding_in, water_of, MOST_IN_VAIN
-   use degrees_of_freedom, only: dofs_t, at_nodes
+   use degrees_of_freedom, only: dofs_t, at_nodes, of_unknowns
    use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
    use carried_slopes, only: AS_BEFORE, BY_SLOPES
@@ -399,7 +399,7 @@ contains
       real(wp) :: unknowns(solution%dofs%n), row
       integer :: i, place
 
-      unknowns = [(solution%next%x(solution%dofs%field(i), solution%dofs%node(i)), i=1, solution%dofs%n)]
+      unknowns = of_unknowns(solution%dofs, solution%next%x)
       rounding = 0.0_wp
       do i = 1, solution%dofs%n
          if (solution%constraint%fixed(i)) cycle

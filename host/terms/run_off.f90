@@ -5,6 +5,7 @@
 module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts
+   use degrees_of_freedom, only: of_unknowns
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t, factor_at, factors_of, gravity_at, value_at, load_t, now_in
@@ -187,14 +188,11 @@ contains
    pure subroutine begin_sides(self, problem)
       class(run_off_t), intent(inout) :: self
       type(problem_t), intent(inout) :: problem
-      integer :: i
 
-      self%releases = [(0, i=1, problem%dofs%n)]
-      associate (dofs => problem%dofs, c => problem%constraint)
-         do i = 1, dofs%n
-            if (c%limited_by(i) > 0) c%fixed(i) = problem%state%x(dofs%field(i), dofs%node(i)) > &
-                                                  c%target(i) - AT_LIMIT*(1 + abs(c%target(i)))
-         end do
+      self%releases = spread(0, 1, problem%dofs%n)
+      associate (c => problem%constraint)
+         where (c%limited_by > 0) &
+            c%fixed = of_unknowns(problem%dofs, problem%state%x) > c%target - AT_LIMIT*(1 + abs(c%target))
       end associate
    end subroutine begin_sides
 

@@ -4,7 +4,7 @@
 module staging
    use kinds, only: wp
    use acting_places, only: nodes_of_ground
-   use degrees_of_freedom, only: dofs_t
+   use degrees_of_freedom, only: dofs_t, of_unknowns
    use equation_assembly, only: assembly_t, make_assembly, assemble
    use exit_codes, only: EXIT_MATERIAL
    use faults, only: fault_t, raise, EXIT_INPUT
@@ -192,15 +192,13 @@ contains
       class(staging_t), intent(in) :: self
       real(wp), intent(in) :: time
       type(problem_t), intent(inout) :: problem
-      integer :: i
 
       associate (c => problem%constraint, dofs => problem%dofs)
-         do i = 1, dofs%n
-            if (.not. self%absent(i)) cycle
-            c%fixed(i) = .true.
-            c%target(i) = problem%state%x(dofs%field(i), dofs%node(i))
-            if (dofs%field(i) > DISPLACEMENTS) c%air(dofs%node(i)) = .false.
-         end do
+         where (self%absent)
+            c%fixed = .true.
+            c%target = of_unknowns(dofs, problem%state%x)
+         end where
+         c%air(pack(dofs%node, self%absent .and. dofs%field > DISPLACEMENTS)) = .false.
       end associate
    end subroutine prescribe
 end module staging
