@@ -92,11 +92,8 @@ contains
       call check_surface(master_x, geometry%master_edges, .true., status)
       if (status%code /= CONTACT_OK .or. .not. geometry%options%axisymmetric) return
       rounding = epsilon(1.0_wp)*maxval(abs(slave_x))
-      do i = 1, geometry%slave_nodes
-         if (slave_x(1, i) >= -rounding) cycle
-         status = contact_status_t(CONTACT_BAD_RADIUS, i, .false., slave_x(1, i))
-         return
-      end do
+      i = findloc(slave_x(1, :) >= -rounding, .false., dim=1)
+      if (i > 0) status = contact_status_t(CONTACT_BAD_RADIUS, i, .false., slave_x(1, i))
    end subroutine check_coordinates
 
    pure subroutine check_surface(x, edges, master, status)
@@ -107,11 +104,9 @@ contains
       real(wp) :: stretch
       integer :: i
 
-      do i = 1, size(x, 2)
-         if (all(ieee_is_finite(x(:, i)))) cycle
-         status = contact_status_t(CONTACT_NOT_FINITE, i, master)
-         return
-      end do
+      i = findloc(all(ieee_is_finite(x), dim=1), .false., dim=1)
+      if (i > 0) status = contact_status_t(CONTACT_NOT_FINITE, i, master)
+      if (i > 0) return
       do i = 1, size(edges, 2)
          stretch = least_stretch(edge_of(x(:, edges(:, i))))
          if (stretch > LEAST_STRETCH_LENGTH) cycle

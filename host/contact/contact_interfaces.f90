@@ -11,7 +11,7 @@ module contact_interfaces
    use contact_response, only: nodal_forces_t, new_forces
    use contact_plate, only: gather_on_plate, force_on_plate, new_spring_result, evaluate_springs, lengths_of_nodes
    use plate_motion, only: plate_motion_t, plate_positions
-   use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, CONTACT_OK
+   use contact_types, only: contact_options_t, contact_status_t, has_friction, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
    use unknown_fields, only: DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, entry_of
@@ -65,7 +65,7 @@ module contact_interfaces
       logical :: unsettled = .false.        !< Part of what the iterate asks for is held back: it is no solution yet.
       real(wp) :: rounding = 0.0_wp         !< Rounding of differences of displacements, times stiffness [kN].
    contains
-      procedure :: act, evaluate, missing, add, message, forces, find_closed, stretch
+      procedure :: act, evaluate, missing, add, forces, find_closed, stretch
       procedure :: probe, begin_friction, accept_friction, exchange_friction
    end type contacts_t
 contains
@@ -231,14 +231,6 @@ contains
                              size(self%interfaces))])
       self%rounding = ROUNDINGS*epsilon(1.0_wp)*norm2(rounding)
    end function evaluate
-
-   !> Says why the last displacements were refused.
-   function message(self) result(text)
-      class(contacts_t), intent(in) :: self
-      character(:), allocatable :: text
-
-      text = contact_message(self%status)
-   end function message
 
    !> Evaluates the contacts without slopes, into `probe` of every interface that acts: the outcome of the last
    !> evaluation within a step stays.

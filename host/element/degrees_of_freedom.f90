@@ -28,7 +28,7 @@ contains
       integer :: e, f, i, leader
 
       has = .false.
-      has(:DISPLACEMENTS, reshape(domain%mesh%t6, [size(domain%mesh%t6)])) = .true.
+      has(:DISPLACEMENTS, [domain%mesh%t6]) = .true.
       do e = 1, size(domain%mesh%t6, 2)
          associate (carriers => domain%carriers(:domain%n_carriers(e), e), &
                     region => domain%regions(domain%region_of(e)))

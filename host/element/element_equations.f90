@@ -56,8 +56,6 @@ contains
       type(domain_t), intent(in) :: domain
       integer, intent(in) :: element   !< Number of the element.
 
-      element_size = LAST_U
-      if (domain%n_carriers(element) == 0) return
       associate (region => domain%regions(domain%region_of(element)))
          element_size = LAST_U + domain%n_carriers(element)*count([region%with_w, region%with_c])
       end associate

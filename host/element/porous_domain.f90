@@ -149,7 +149,6 @@ contains
 
       call place_pressures(domain)
       call triangle_rule(domain%rule, points, weights)
-      if (allocated(domain%gauss)) deallocate (domain%gauss)
       allocate (domain%gauss(domain%rule, size(domain%mesh%t6, 2)))
       do e = 1, size(domain%mesh%t6, 2)
          x = domain%mesh%x(:, domain%mesh%t6(:, e))
@@ -193,7 +192,6 @@ contains
             end associate
          end do
       end do
-      if (allocated(domain%before_state)) deallocate (domain%before_state)
       allocate (domain%before_state(size(domain%mesh%t6, 2) + 1), source=0)
       do e = 1, size(domain%mesh%t6, 2)
          domain%before_state(e + 1) = domain%before_state(e) &
@@ -230,9 +228,7 @@ contains
       type(domain_t), intent(inout) :: domain
       integer :: e
 
-      if (.not. allocated(domain%center)) allocate (domain%center(size(domain%mesh%t6, 2)), source=0)
       domain%carriers = domain%mesh%t6
-      if (allocated(domain%n_carriers)) deallocate (domain%n_carriers)
       allocate (domain%n_carriers(size(domain%mesh%t6, 2)), source=domain%n_p)
       do e = 1, size(domain%mesh%t6, 2)
          associate (region => domain%regions(domain%region_of(e)))

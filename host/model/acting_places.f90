@@ -78,7 +78,7 @@ contains
       integer :: i
 
       carried = .false.
-      carried(reshape(model%domain%mesh%t6, [size(model%domain%mesh%t6)])) = .true.
+      carried([model%domain%mesh%t6]) = .true.
       carried(model%domain%bodies) = .true.
       do i = 1, size(model%actions)
          if (model%actions(i)%group > 0 .and. fault%code == 0) call look(model%actions(i), &

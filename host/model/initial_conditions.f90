@@ -171,24 +171,18 @@ contains
       type(model_t), intent(in) :: model
       logical, intent(in) :: present(:)    !< (elements) In the first stage.
       real(wp), intent(inout) :: x(:, :)   !< (FIELDS, nodes)
-      logical :: wet(size(x, 2))
-      integer :: e
+      logical, dimension(size(x, 2)) :: own, without   !< Nodes with pressures of drained ground; of no fluids.
 
       associate (domain => model%domain)
          if (all(domain%regions%drainage == COUPLED)) return
-         wet = .false.
-         do e = 1, size(domain%region_of)
-            associate (drainage => domain%regions(domain%region_of(e))%drainage, nodes => domain%mesh%t6(:, e))
-               if (drainage /= DRY) wet(nodes) = .true.
-               if (drainage == DRAINED .and. present(e)) x(AT_P_W:AT_P_C, nodes) = domain%given(:, nodes, drainage)
-            end associate
-            if (domain%center(e) == 0) cycle
-            wet(domain%center(e)) = .true.
-            x(AT_P_W:AT_P_C, domain%center(e)) = domain%given(:, domain%center(e), UNDRAINED)
-         end do
-         do e = 1, size(x, 2)
-            if (.not. wet(e)) x(AT_P_W:AT_P_C, e) = 0.0_wp
-         end do
+         associate (centers => pack(domain%center, domain%center > 0), of => domain%regions(domain%region_of)%drainage)
+            without = .not. nodes_of(domain%mesh, of /= DRY)
+            without(centers) = .false.
+            own = nodes_of(domain%mesh, of == DRAINED .and. present)
+            if (any(own)) where (spread(own, 1, 2)) x(AT_P_W:AT_P_C, :) = domain%given(:, :, DRAINED)
+            if (size(centers) > 0) x(AT_P_W:AT_P_C, centers) = domain%given(:, centers, UNDRAINED)
+            where (spread(without, 1, 2)) x(AT_P_W:AT_P_C, :) = 0.0_wp
+         end associate
       end associate
    end subroutine set_given_nodes
 

@@ -36,7 +36,7 @@ contains
 
       associate (mesh => m%mesh)
          in_ground = .false.
-         in_ground(reshape(mesh%t6, [size(mesh%t6)])) = .true.
+         in_ground([mesh%t6]) = .true.
          distance = [(norm2(mesh%x(:, i) - point%x), i=1, size(distance))]
          node = minloc(distance, 1, mask=in_ground)
          e = 0

@@ -161,11 +161,9 @@ contains
       integer, intent(in) :: amplitude
       integer :: i
 
-      associate (list => run%model%actions)
-         acts = .not. any(list%amplitude == amplitude)
-         do i = 1, size(list)
-            if (list(i)%amplitude == amplitude) acts = acts .or. list(i)%in_stage(run%at%stage)
-         end do
+      associate (list => run%model%actions, stage => run%at%stage)
+         acts = .not. any(list%amplitude == amplitude) .or. &
+                any([(list(i)%amplitude == amplitude .and. list(i)%in_stage(stage), i=1, size(list))])
       end associate
    end function acts
 end module cycles_alarm

@@ -23,15 +23,12 @@ module run_summary
 
    real(wp), parameter :: NOISE = 1.0e-10_wp   !< Share of the largest displacement or pressure that is rounding.
 
-   !> Largest magnitudes of the unknowns at the named points so far, with their signs, when, and the step to it.
-   type :: peaks_t
-      real(wp), allocatable :: value(:, :), time(:, :), dt(:, :)   !< (FIELDS, points) [m, kPa], [s], [s]
-   end type peaks_t
    type, extends(observer_t) :: summary_observer_t
       logical :: quiet = .false.         !< Nothing is said of the answers.
       logical :: verbose = .false.       !< Memory, times and counters are printed.
       real(wp) :: started = 0.0_wp       !< When the program began, on the wall clock [s].
-      type(peaks_t) :: peaks             !< Peaks at the named points.
+      !> Largest magnitudes of the unknowns at the named points so far, with their signs, when, and the step to it.
+      real(wp), allocatable :: peak(:, :), time(:, :), dt(:, :)   !< (FIELDS, points) [m, kPa], [s], [s]
    contains
       procedure :: exchange
       procedure :: hear
@@ -42,10 +39,10 @@ contains
       class(summary_observer_t), intent(inout) :: self
       class(archive_t), intent(inout) :: archive
 
-      call archive%exchange_allocatable('peaks_value', self%peaks%value, 'm, kPa', &
+      call archive%exchange_allocatable('peaks_value', self%peak, 'm, kPa', &
                                         'largest unknowns of the named points so far')
-      call archive%exchange_allocatable('peaks_time', self%peaks%time, 's', 'times of these values')
-      call archive%exchange_allocatable('peaks_dt', self%peaks%dt, 's', 'steps that led to these values')
+      call archive%exchange_allocatable('peaks_time', self%time, 's', 'times of these values')
+      call archive%exchange_allocatable('peaks_dt', self%dt, 's', 'steps that led to these values')
    end subroutine exchange
 
    !> Notes the largest values, which are zero before the first step, and says how a stage went that has come to its
@@ -59,8 +56,8 @@ contains
       select case (event)
       case (BEGINS)
          if (run%steps > 0) return
-         associate (peaks => self%peaks, points => size(run%model%output%points))
-            allocate (peaks%value(FIELDS, points), peaks%time(FIELDS, points), peaks%dt(FIELDS, points), source=0.0_wp)
+         associate (points => size(run%model%output%points))
+            allocate (self%peak(FIELDS, points), self%time(FIELDS, points), self%dt(FIELDS, points), source=0.0_wp)
          end associate
       case (TAKEN_OVER)
          call note_peaks(self, run)
@@ -70,7 +67,7 @@ contains
             counted(run%iterations, 'linear solve')//' and '//counted(run%cuts, 'cut')//' so far.'
       case (ENDS)
          if (run%steps == 0) return
-         if (.not. self%quiet) call print_summary(output_unit, run, self%peaks)
+         if (.not. self%quiet) call print_summary(self, output_unit, run)
          if (self%verbose) call print_cost(output_unit, run, clock() - self%started)
       end select
    end subroutine hear
@@ -84,38 +81,36 @@ contains
 
       do i = 1, size(run%model%output%points)
          x = values_at(run%model%output%points(i), run%state%x)
-         associate (peaks => self%peaks)
-            where (abs(x) > abs(peaks%value(:, i)))
-               peaks%time(:, i) = run%state%time
-               peaks%dt(:, i) = run%scheme%dt
-               peaks%value(:, i) = x
-            end where
-         end associate
+         where (abs(x) > abs(self%peak(:, i)))
+            self%time(:, i) = run%state%time
+            self%dt(:, i) = run%scheme%dt
+            self%peak(:, i) = x
+         end where
       end do
    end subroutine note_peaks
 
    !> Writes the summary; nothing of answers that no step has changed, of steps where all are given.
-   subroutine print_summary(unit, run, peaks)
+   subroutine print_summary(self, unit, run)
+      class(summary_observer_t), intent(in) :: self
       integer, intent(in) :: unit   !< Number of a Fortran unit.
       type(run_t), intent(in) :: run
-      type(peaks_t), intent(in) :: peaks
       character(:), allocatable :: text
       real(wp) :: most(2)
       logical :: follows
       integer :: i, f
 
-      most = [maxval([0.0_wp, abs(peaks%value(:DISPLACEMENTS, :))]), &
-              maxval([0.0_wp, abs(peaks%value(DISPLACEMENTS + 1:, :))])]
+      most = [maxval([0.0_wp, abs(self%peak(:DISPLACEMENTS, :))]), &
+              maxval([0.0_wp, abs(self%peak(DISPLACEMENTS + 1:, :))])]
       do i = 1, size(run%model%output%points)
          associate (point => run%model%output%points(i), m => run%domain)
             ! Pressures of an undrained region are no unknowns of its nodes: they follow from strains.
             follows = m%regions(m%region_of((point%gauss - 1)/m%rule + 1))%drainage == UNDRAINED
             do f = 1, FIELDS
-               if (.not. abs(peaks%value(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
+               if (.not. abs(self%peak(f, i)) > NOISE*most(merge(1, 2, f <= DISPLACEMENTS))) cycle
                if (all(run%dofs%of(f, point%nodes) == 0) .and. .not. (follows .and. f > DISPLACEMENTS)) cycle
                write (unit, '(a)') trim(point%name)//'.'//trim(FIELD_NAMES(f))//' '// &
-                  with_unit(peaks%value(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
-                  with_unit(peaks%time(f, i), 's', peaks%dt(f, i))
+                  with_unit(self%peak(f, i), trim(merge('m  ', 'kPa', f <= DISPLACEMENTS)))//' at '// &
+                  with_unit(self%time(f, i), 's', self%dt(f, i))
             end do
          end associate
       end do

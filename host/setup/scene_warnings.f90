@@ -143,14 +143,10 @@ contains
    !> Measures the largest side of the box around the elements [m].
    pure real(wp) function extent(mesh)
       type(mesh_t), intent(in) :: mesh
-      integer :: i
 
-      extent = 0.0_wp
-      do i = 1, 2
-         associate (x => mesh%x(i, reshape(mesh%t6, [size(mesh%t6)])))
-            extent = max(extent, maxval(x) - minval(x))
-         end associate
-      end do
+      associate (x => mesh%x(:, [mesh%t6]))
+         extent = maxval(maxval(x, dim=2) - minval(x, dim=2))
+      end associate
    end function extent
 
    subroutine look_at_initials(model, tension)

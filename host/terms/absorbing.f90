@@ -163,7 +163,7 @@ contains
             held = given_in(model, s, throughout=.true.)
             do f = 1, DISPLACEMENTS
                ! Ground that is held throughout has no motion along this axis.
-               if (.not. all(held(f, nodes)) .or. all(held(f, reshape(t6, [size(t6)])))) cycle
+               if (.not. all(held(f, nodes)) .or. all(held(f, [t6]))) cycle
                if (.not. abs(side%velocity(f)) > 0.0_wp .and. &
                    (extent(f) > extent(3 - f) .or. abs(side%velocity(3 - f)) > 0.0_wp)) cycle
                call print_warning(place_of(side)//WORDS(f)//' of every node of this &absorbing is prescribed by a '// &

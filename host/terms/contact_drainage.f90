@@ -10,6 +10,7 @@ module contact_drainage
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t
    use contact_interfaces, only: contacts_t
+   use contact_types, only: contact_message
    use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use scene_parts, only: place_of
@@ -85,7 +86,7 @@ contains
          call seal(self, problem%model, problem%system%contacts, problem%constraint)
       else
          call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '// &
-                    problem%system%contacts%message()//'.')
+                    contact_message(problem%system%contacts%status)//'.')
       end if
    end subroutine before_step
 

@@ -8,7 +8,7 @@ module friction
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t
-   use contact_types, only: contact_options_t, has_friction
+   use contact_types, only: contact_options_t, contact_message, has_friction
    use faults, only: fault_t, raise
    use scene_term, only: scene_term_t
    implicit none (type, external)
@@ -48,7 +48,7 @@ contains
       type(fault_t), intent(inout) :: fault
 
       if (.not. problem%system%contacts%begin_friction(problem%state%x)) call raise(fault, EXIT_CONVERGENCE, &
-         'Friction at the start of a step: '//problem%system%contacts%message()//'.')
+         'Friction at the start of a step: '//contact_message(problem%system%contacts%status)//'.')
    end subroutine before_step
 
    !> Takes over the tractions at the end of the step, and what sliding has dissipated.
