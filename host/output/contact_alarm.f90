@@ -4,7 +4,7 @@
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use contact_interfaces, only: contacts_t, contact_interface_t, shortest_edge
+   use contact_interfaces, only: contacts_t, shortest_edge
    use run_state, only: run_t
    use texts, only: place_text, short
    use unknown_fields, only: AT_U_Z
@@ -26,20 +26,14 @@ contains
    subroutine warn_of_overlaps(run)
       type(run_t), intent(in) :: run
       type(contacts_t) :: contacts
-
-      if (size(run%model%contacts) == 0) return
-      contacts = run%system%contacts
-      if (contacts%probe(run%state%x)) call look_at_overlaps(run, contacts%interfaces)
-   end subroutine warn_of_overlaps
-
-   subroutine look_at_overlaps(run, interfaces)
-      type(run_t), intent(in) :: run
-      type(contact_interface_t), intent(in) :: interfaces(:)
       real(wp) :: depth
       integer :: i, at
 
+      if (size(run%model%contacts) == 0) return
+      contacts = run%system%contacts
+      if (.not. contacts%probe(run%state%x)) return
       do i = 1, size(run%model%contacts)
-         associate (t => interfaces(i), one => run%model%contacts(i), x => run%state%x)
+         associate (t => contacts%interfaces(i), one => run%model%contacts(i), x => run%state%x)
             if (.not. t%acts) cycle
             if (run%at%stage > 1) then
                if (one%in_stage(run%at%stage - 1)) cycle
@@ -72,7 +66,7 @@ contains
             'or the mesh until they overlap by no more than '//short(least)//' m, which is enough for what contact '// &
             'alone holds.'
       end function advice
-   end subroutine look_at_overlaps
+   end subroutine warn_of_overlaps
 
    !> Warns once of every contact whose surfaces have penetrated each other, on standard error, also where the run is
    !> quiet. From 1e-3 of the length of an edge on: docs/theory/contact.md section 2.4.

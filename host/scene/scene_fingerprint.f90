@@ -3,7 +3,7 @@
 !> Comments, spaces and what changes no result take no part.
 module scene_fingerprint
    use, intrinsic :: iso_fortran_env, only: int64
-   use files, only: read_whole
+   use files, only: beside, read_whole
    use namelists, only: group_t
    use scene_parts, only: origin_t
    use texts, only: lower_case, whole
@@ -70,12 +70,10 @@ contains
    subroutine add_file(scene, path, hash)
       character(*), intent(in) :: scene, path
       integer(int64), intent(inout) :: hash(2)
-      character(:), allocatable :: place, contents
+      character(:), allocatable :: contents
       logical :: good
 
-      place = path
-      if (path(1:1) /= '/') place = scene(:index(scene, '/', back=.true.))//path
-      call read_whole(place, contents, good)
+      call read_whole(beside(scene, path), contents, good)
       if (good) call add_text(contents, hash)
    end subroutine add_file
 end module scene_fingerprint
