@@ -314,7 +314,7 @@ contains
          t6(:, i) = counter_clockwise(mesh, t6(:, i))
       end do
       mesh%t6 = t6
-      call add_group(mesh, 'all', [(i, i=1, size(t6, 2))], reshape([integer ::], [3, 0]), [integer ::])
+      call add_group(mesh, 'all', [(i, i=1, size(t6, 2))])
       do i = 1, size(g%members)
          associate (one => g%members(i))
             if (any(g%names%dimension == one%dimension .and. g%names%tag == one%tag)) cycle

@@ -103,16 +103,16 @@ contains
       end function middle
 
       subroutine add_regions()
-         integer :: cell(2*nr*nz), none(3, 0)
+         integer :: cell(2*nr*nz)
          logical :: inside(2*nr*nz)
          integer :: p, q, c
 
          cell = [(c, c=1, 2*nr*nz)]
-         call add_group(mesh, 'all', cell, none, [integer ::])
+         call add_group(mesh, 'all', cell)
          do q = 1, size(z_blocks%cells)
             do p = 1, size(r_blocks%cells)
                inside = [(r_piece(mod((c - 1)/2, nr) + 1) == p .and. z_piece((c - 1)/2/nr + 1) == q, c=1, 2*nr*nz)]
-               call add_group(mesh, 'block_'//whole(p)//'_'//whole(q), pack(cell, inside), none, [integer ::])
+               call add_group(mesh, 'block_'//whole(p)//'_'//whole(q), pack(cell, inside))
             end do
          end do
       end subroutine add_regions
@@ -154,10 +154,9 @@ contains
          integer, intent(in) :: edges(:, :), piece(:)
          integer :: p, c
 
-         call add_group(mesh, name//ending, [integer ::], edges, [integer ::])
+         call add_group(mesh, name//ending, edges=edges)
          do p = 1, maxval(piece)
-            call add_group(mesh, name//'_'//whole(p)//ending, [integer ::], &
-                           edges(:, pack([(c, c=1, size(piece))], piece == p)), [integer ::])
+            call add_group(mesh, name//'_'//whole(p)//ending, edges=edges(:, pack([(c, c=1, size(piece))], piece == p)))
          end do
       end subroutine add_side
    end subroutine graded_mesh

@@ -31,26 +31,22 @@ contains
       place = findloc(mesh%groups%name == name, .true., dim=1)
    end function find_group
 
-   !> Adds a group and lists its nodes.
+   !> Adds a group of what is given, and lists its nodes.
    subroutine add_group(mesh, name, elements, edges, nodes)
       type(mesh_t), intent(inout) :: mesh
       character(*), intent(in) :: name
-      integer, intent(in) :: elements(:), edges(:, :), nodes(:)   !< (n), (3, n), (n): see group_of_t.
+      integer, intent(in), optional :: elements(:), edges(:, :), nodes(:)   !< (n), (3, n), (n): see group_of_t.
       type(group_of_t) :: group
-      logical, allocatable :: member(:)
+      logical :: member(size(mesh%x, 2))
       integer :: i
 
-      allocate (member(size(mesh%x, 2)), source=.false.)
-      do i = 1, size(elements)
-         member(mesh%t6(:, elements(i))) = .true.
-      end do
-      do i = 1, size(edges, 2)
-         member(edges(:, i)) = .true.
-      end do
-      member(nodes) = .true.
-      group%name = name
-      group%elements = elements
-      group%edges = edges
+      group = group_of_t(name, [integer ::], reshape([integer ::], [3, 0]), [integer ::])
+      if (present(elements)) group%elements = elements
+      if (present(edges)) group%edges = edges
+      member = .false.
+      if (present(nodes)) member(nodes) = .true.
+      member([mesh%t6(:, group%elements)]) = .true.
+      member([group%edges]) = .true.
       group%nodes = pack([(i, i=1, size(member))], member)
       if (.not. allocated(mesh%groups)) allocate (mesh%groups(0))
       mesh%groups = [mesh%groups, group]

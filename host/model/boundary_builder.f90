@@ -35,7 +35,7 @@ contains
       real(wp), allocatable :: r(:), outline(:)
       real(wp) :: z
       logical :: up, good
-      integer :: none(3, 0), s
+      integer :: s
 
       joined_name = ''
       history = ''
@@ -88,7 +88,7 @@ contains
             call add_body(model, plate%corners(:, 1), plate%node, trim(plate%name))
          else
             plate%node = mesh%groups(plate%group)%nodes(1)
-            call add_group(mesh, trim(plate%name), [integer ::], none, mesh%groups(plate%group)%nodes)
+            call add_group(mesh, trim(plate%name), nodes=mesh%groups(plate%group)%nodes)
          end if
       end associate
       allocate (plate%motion)
@@ -127,12 +127,11 @@ contains
       real(wp), intent(in) :: x(2)   !< [m]
       integer, intent(out) :: node
       character(*), intent(in), optional :: name
-      integer :: none(3, 0)
 
       associate (mesh => model%domain%mesh)
          mesh%x = reshape([mesh%x, x], [2, size(mesh%x, 2) + 1])
          node = size(mesh%x, 2)
-         if (present(name)) call add_group(mesh, name, [integer ::], none, [node])
+         if (present(name)) call add_group(mesh, name, nodes=[node])
       end associate
       model%domain%bodies = [model%domain%bodies, node]
    end subroutine add_body

@@ -6,31 +6,27 @@ module contact_rows
    use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions
    use model_types, only: model_t, plate_t
    use run_state, only: run_t
+   use run_tables, only: columns_of
    implicit none (type, external)
    private
    public :: contact_columns, contact_row, contact_nodes
+
+   character(7), parameter :: COLUMNS(7) = [character(7) :: 'thrust', 'energy', 'area', 'active', 'sealed', 'drag', &
+      'sliding']
 contains
    !> Names the columns of contact.csv; contact_row has their units.
    function contact_columns(model) result(head)
       type(model_t), intent(in) :: model
       character(:), allocatable :: head
-      character(1 + len(model%contacts%name)) :: name
-      integer :: i, k, n
+      integer :: i, k
 
       head = 'time,dt,work'
       do i = 1, size(model%contacts)
-         name = ','//model%contacts(i)%name
-         head = head//trim(name)//'.thrust'//trim(name)//'.energy'//trim(name)//'.area'//trim(name)//'.active'// &
-                trim(name)//'.sealed'//trim(name)//'.drag'//trim(name)//'.sliding'
+         head = head//columns_of(model%contacts(i)%name, COLUMNS)
       end do
       do i = 1, size(model%plates)
-         name = ','//model%plates(i)%name
          do k = 1, size(model%plates(i)%coordinates)
-            associate (names => model%plates(i)%coordinates(k)%names)
-               do n = 1, size(names)
-                  head = head//trim(name)//'.'//trim(names(n))
-               end do
-            end associate
+            head = head//columns_of(model%plates(i)%name, model%plates(i)%coordinates(k)%names)
          end do
       end do
    end function contact_columns
@@ -66,7 +62,7 @@ contains
 
       pure function values(t) result(list)
          type(contact_interface_t), intent(in) :: t
-         real(wp) :: list(7)
+         real(wp) :: list(size(COLUMNS))
 
          list = 0.0_wp
          list(5) = t%sealed

@@ -13,7 +13,7 @@ module output_tables
    use reaction_rows, only: reaction_columns, reaction_row
    use run_observer, only: observer_t, FITS, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t
-   use run_tables, only: open_table, exchange_table, write_table
+   use run_tables, only: open_table, exchange_table, write_table, columns_of
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
@@ -87,13 +87,11 @@ contains
    pure function history_columns(model) result(head)
       type(model_t), intent(in) :: model
       character(:), allocatable :: head
-      integer :: i, k
+      integer :: i
 
       head = 'time'
       do i = 1, size(model%output%points)
-         do k = 1, size(COLUMNS)
-            head = head//','//trim(model%output%points(i)%name)//'.'//trim(COLUMNS(k))
-         end do
+         head = head//columns_of(model%output%points(i)%name, COLUMNS)
       end do
    end function history_columns
 

@@ -5,9 +5,10 @@ module run_tables
    use csv, only: csv_t, new_csv, resume_csv, flush_csv, close_csv, write_row, is_open, NUMBERS
    use faults, only: fault_t
    use kinds, only: wp
+   use texts, only: joined
    implicit none (type, external)
    private
-   public :: open_table, exchange_table, write_table
+   public :: open_table, exchange_table, write_table, columns_of
 contains
    !> Opens a new table; or, after a restart, the one of the run as it was at its checkpoint, if it had a row. Fault
    !> EXIT_OUTPUT: it cannot be written.
@@ -53,4 +54,12 @@ contains
       end do
       call close_csv(table, fault)
    end subroutine write_table
+
+   !> Names the columns of one thing, as ",NAME.PART,NAME.PART": they stand behind others.
+   pure function columns_of(name, parts) result(columns)
+      character(*), intent(in) :: name, parts(:)
+      character(:), allocatable :: columns
+
+      columns = ','//trim(name)//'.'//joined(parts, ','//trim(name)//'.')
+   end function columns_of
 end module run_tables
