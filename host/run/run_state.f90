@@ -3,7 +3,9 @@
 module run_state
    use, intrinsic :: iso_fortran_env, only: int64
    use archive, only: archive_t
+   use carried_slopes, only: exchange_slopes
    use kinds, only: wp
+   use linear_system, only: exchange_factors
    use error_norms, only: rate_memory_t, new_memory, exchange_memory
    use start_findings, only: tension_t
    use model_types, only: problem_t, term_box_t, gravity_at
@@ -114,14 +116,17 @@ contains
       if (archive%reading) call reset_control(run)
       call exchange_control(run%control, archive)
       if (allocated(run%system%contacts)) call exchange_pairs(run%dofs%n, run%system%extra, archive)
+      if (archive%reading .and. archive%good .and. allocated(run%system%extra)) then
+         call make_pattern(run%dofs%n, run%dofs%element, run%system%extra, run%pattern)
+         deallocate (run%assembly%values)
+         allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
+      end if
+      call exchange_slopes(run%assembly%slopes, archive)
+      call exchange_factors(run%dofs, run%pattern, run%system, archive)
       if (.not. archive%reading .or. .not. archive%good) return
       run%stage => run%model%stages(run%at%stage)
       run%state%gravity = gravity_at(run%model, run%state%time)
       call copy_state(run%state, run%next)
-      if (.not. allocated(run%system%extra)) return
-      call make_pattern(run%dofs%n, run%dofs%element, run%system%extra, run%pattern)
-      deallocate (run%assembly%values)
-      allocate (run%assembly%values(size(run%pattern%col)), source=0.0_wp)
    end subroutine exchange_run
 
    !> Exchanges a control, made by reset_control, with an archive.

@@ -2,6 +2,7 @@
 !> The linear system of an iteration: contacts in its pattern, factors that are kept while they serve, and where the
 !> time goes. docs/theory/host.md section 6.
 module linear_system
+   use archive, only: archive_t
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use convergence, only: field_scales, water_scale, water_of, body_scale, is_body
@@ -14,7 +15,7 @@ module linear_system
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
-   public :: system_t, solve_step, asked_for, update_contacts, join_unknowns, MOST_STEPS
+   public :: system_t, solve_step, asked_for, update_contacts, join_unknowns, exchange_factors, MOST_STEPS
    public :: T_ASSEMBLY, T_FACTORISATION, T_SOLUTION, T_REST, T_MATERIAL, T_CONTACT
 
    integer, parameter :: TIMERS = 6, T_ASSEMBLY = 1, T_FACTORISATION = 2, T_SOLUTION = 3, T_REST = 4, T_MATERIAL = 5, &
@@ -32,6 +33,7 @@ module linear_system
       logical :: analysed = .false.
       logical :: reuse = .true.               !< Factors may serve later matrices.
       logical :: factored = .false.           !< There are factors worth trying.
+      real(wp), allocatable :: made_of(:)     !< (entries) Values of the matrix that the factors belong to.
       logical, allocatable :: fixed(:), air(:)   !< Unknowns and air pressures that were fixed when the factors were
                                                  !< made.
       logical :: indefinite = .false.         !< The last solution found its matrix so, see factorise.
@@ -95,12 +97,50 @@ contains
       system%fixed = constraint%fixed
       system%air = constraint%air
       system%active = active
+      system%made_of = assembly%values
       call solve_by_factors(system%sparse, assembly%values, rhs, weight, tolerance, MOST_STEPS, dx, &
                             steps, status)
       ! What rounding leaves is Newton's to judge.
       if (status == INACCURATE) status = SOLVED
       call add_elapsed(system%seconds(T_SOLUTION), t0)
    end subroutine solve_step
+
+   !> Exchanges with an archive what the first solution of the next step depends on. Factors are made again of the same
+   !> matrix, so that they are the same.
+   subroutine exchange_factors(dofs, pattern, system, archive)
+      type(dofs_t), intent(in) :: dofs
+      type(pattern_t), intent(in) :: pattern
+      type(system_t), intent(inout) :: system
+      class(archive_t), intent(inout) :: archive
+      integer, allocatable :: fixed(:), air(:)
+      integer :: status
+
+      call archive%enter('factors')
+      call archive%exchange('first_error', system%first_error, '-', 'error of the last step after its first correction')
+      call archive%exchange('known', system%factored, 'whether factors of an earlier matrix serve the next step')
+      if (system%factored) then
+         if (.not. archive%reading) then
+            fixed = merge(1, 0, system%fixed)
+            air = merge(1, 0, system%air)
+         end if
+         call archive%exchange_allocatable('made_of', system%made_of, 'mixed', 'values of that matrix')
+         call archive%exchange_allocatable('fixed', fixed, '-', 'unknowns that were fixed in it')
+         call archive%exchange_allocatable('air', air, '-', 'nodes whose air pressure was given in it')
+         call archive%exchange('active', system%active, '-', 'nodes that were in contact in it', least=0)
+      end if
+      call archive%leave('factors')
+      if (.not. (archive%reading .and. archive%good .and. system%factored)) return
+      if (size(system%made_of) /= size(pattern%col) .or. size(fixed) /= dofs%n .or. size(air) /= size(dofs%of, 2)) then
+         call archive%refuse()
+         return
+      end if
+      system%fixed = fixed == 1
+      system%air = air == 1
+      call analyse(system%sparse, pattern%row, pattern%col, status)
+      system%analysed = .true.
+      call factorise(system%sparse, system%made_of, status)
+      if (status /= SOLVED) call archive%refuse()
+   end subroutine exchange_factors
 
    !> Finds the magnitude of the right side of every field, rows of prescribed values included; that of the
    !> displacements is one. docs/theory/host.md section 5.1.

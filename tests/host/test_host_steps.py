@@ -300,3 +300,20 @@ def test_steps_end_at_breaks_and_are_the_same_after_a_restart():
     check("restart: goes on", done.returncode == 0, done.stderr)
     for file in ("ledger.csv", "histories.csv"):
         check(f"restart: same bytes of {file}", (whole / file).read_bytes() == (half / file).read_bytes())
+
+
+def test_a_checkpoint_changes_no_answer():
+    # What a run writes beside its answers is no part of them: with a checkpoint after every step, and taken up from
+    # one in the middle, the tables have the bytes of a run that writes none.
+    text = RESTART.read_text().replace("   dt_growth = 1.3\n", "").replace(
+        "checkpoint_steps = 2", "checkpoint_steps = 0\n   step_tolerance = 3e-2")
+    scene = written("kept", text)
+    folders = [work / f"kept_{every}" for every in (0, 1, 50)]
+    for folder in folders:
+        done = run(scene, folder, "--set", f"scene.checkpoint_steps={folder.name[5:]}")
+        check(f"{folder.name}: runs", done.returncode == 0, done.stderr)
+    done = run(scene, folders[-1], "--restart", folders[-1] / "checkpoint.h5")
+    check("restart: goes on", done.returncode == 0, done.stderr)
+    for folder in folders[1:]:
+        for file in ("ledger.csv", "histories.csv"):
+            check(f"same bytes of {file}", (folder / file).read_bytes() == (folders[0] / file).read_bytes(), folder)
