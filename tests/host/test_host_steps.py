@@ -317,3 +317,23 @@ def test_a_checkpoint_changes_no_answer():
     for folder in folders[1:]:
         for file in ("ledger.csv", "histories.csv"):
             check(f"same bytes of {file}", (folder / file).read_bytes() == (folders[0] / file).read_bytes(), folder)
+
+
+def test_saturated_ground_at_no_suction_begins_under_rain():
+    # Its air vanishes in the first step, in which corrections halve. All rain runs off, and the sealed column ends with
+    # water at rest: 9.81 kPa at its base.
+    done = run(written("wet", """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 9.81 /
+&mesh r = 0, 0.2 r_cells = 1 z = 0, 1 z_cells = 10 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&retention name = 'r' law = 'van_genuchten' alpha = 0.1 n = 2 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region material = 'soil' retention = 'r' permeability = 'k' void_ratio = 0.8 /
+&initial stress = 'geostatic' surface = 1 /
+&stage name = 'wet' analysis = 'quasi_static' duration = 1e5 /
+&fix group = 'left' field = 'u_r' / &fix group = 'right' field = 'u_r' / &fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'rain' value = 1e-8 /
+&point name = 'base' r = 0 z = 0 /
+"""), work / "wet")
+    check("it begins, and comes to its end", done.returncode == 0, done.stderr)
+    base = history(work / "wet", "base.p_w")[-1] if done.returncode == 0 else 0.0
+    check("water at rest below", abs(base - 9.81) < 1e-3*9.81, base)
