@@ -15,7 +15,7 @@ module convergence
    implicit none (type, external)
    private
    public :: control_t, log_t, measure, good_enough, field_scales, water_of, water_scale, body_scale, is_body
-   public :: rounding_in
+   public :: rounding_in, RATE_SHARE
    public :: note_stagnation, MOST_IN_VAIN
    public :: BY_FORCES, BY_RESIDUAL, BY_CORRECTION, BY_CHANGE, BY_STAGE, measure_in, linear_tolerance
 
