@@ -8,7 +8,8 @@ module carried_slopes
    use material_point, only: response_t, swollen
    implicit none (type, external)
    private
-   public :: slopes_t, new_slopes, keep_slopes, follow_slopes, kept_response, exchange_slopes, BY_MATERIAL, BY_SLOPES, AS_BEFORE
+   public :: slopes_t, new_slopes, keep_slopes, follow_slopes, kept_response, exchange_slopes
+   public :: BY_MATERIAL, BY_SLOPES, AS_BEFORE
 
    ! What gives the response of the points in a pass over the elements.
    integer, parameter :: BY_MATERIAL = 0   !< The material.

@@ -468,7 +468,8 @@ contains
             if (allocated(at%touched)) assembly%change = assembly%change + &
                min(abs(assembly%residual - without), abs(assembly%residual - without - at%touched))
             where (solution%dofs%field <= DISPLACEMENTS)
-               assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
+               assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0 &
+                                                                  - constraint%faded)
             elsewhere
                assembly%change = assembly%scale
             end where
