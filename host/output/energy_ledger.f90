@@ -304,7 +304,7 @@ contains
       integer :: i
 
       ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
-                                ledger%kinetic_0, -ledger%skeleton)
+                                ledger%kinetic_0, -ledger%skeleton, -ledger%pores)
       work = 0.0_wp
       do i = 1, run%dofs%n
          associate (f => run%dofs%field(i), node => run%dofs%node(i))

@@ -337,3 +337,29 @@ def test_saturated_ground_at_no_suction_begins_under_rain():
     check("it begins, and comes to its end", done.returncode == 0, done.stderr)
     base = history(work / "wet", "base.p_w")[-1] if done.returncode == 0 else 0.0
     check("water at rest below", abs(base - 9.81) < 1e-3*9.81, base)
+
+
+def test_ground_that_pore_pressures_move_creates_no_energy():
+    # Without loads or weight the pores do all work: the rise of a water pressure below, a suction that nothing balances.
+    column = """&scene name = 'pores' geometry = 'plane_strain' fields = '{fields}' step_tolerance = 1e-3 /
+&mesh r = 0, 0.5 r_cells = 1 z = 0, 1 z_cells = 10 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region material = 'soil' void_ratio = 0.8 permeability = 'k' {more} /
+&stage name = 'go' analysis = 'dynamic' duration = 0.02 /
+&fix group = 'left' field = 'u_r' / &fix group = 'right' field = 'u_r' / &fix group = 'bottom' field = 'u_z' /
+"""
+    suction = column.format(fields="u-p_w-p_c", more="retention = 'r'") + """
+&retention name = 'r' law = 'van_genuchten' alpha = 0.1 n = 2 /
+&initial p_w = -20 p_c = 20 / &fix group = 'top' field = 'p_a' /
+"""
+    water = column.format(fields="u-p_w", more="") + """
+&history name = 'rise' times = 0, 0.002, 1 values = 0, 1, 1 /
+&fix group = 'bottom' field = 'p_w' value = 50 history = 'rise' / &fix group = 'top' field = 'p_w' /
+"""
+    for name, text in (("suction", suction), ("water", water)):
+        done = run(written(name, text), work / name)
+        check(f"{name}: comes to its end", done.returncode == 0, done.stderr)
+        ledger = tables.columns(work / name / "ledger.csv")
+        share = np.max(np.abs(ledger["imbalance"]))/np.max(np.abs(ledger["pores"]))
+        check(f"{name}: the balance of energy closes", share < 1e-3, share)
