@@ -264,8 +264,8 @@ contains
             if (.not. fix%in_stage(s) .or. fix%from <= stage%start + SPACINGS*spacing(stage%start) .or. &
                 fix%from >= stage%start + stage%duration) cycle
             call print_warning(place_of(fix)//'hold = ''yes'' takes '''//trim(fix%group_name)//''' back at '// &
-               short(fix%from)//' s, at once, to what it was where stage '//trim(stage%name)//' began. To hold it as '// &
-               'it is then, let a stage begin at that time and limit this &fix to it.')
+               short(fix%from)//' s, at once, to what it was where stage '//trim(stage%name)//' began. To hold it '// &
+               'as it is then, let a stage begin at that time and limit this &fix to it.')
             return
          end associate
       end do

@@ -31,7 +31,7 @@ module water_balance
       real(wp) :: received = 0.0_wp   !< Water through loads, less what dashpots let out [m3].
       real(wp) :: left = 0.0_wp       !< Water through prescribed pressures, less the rain [m3].
       real(wp) :: moved = 0.0_wp      !< Water through boundaries, in and out [m3].
-      real(wp) :: hidden = 0.0_wp     !< What Newton's method may leave where nothing flows [m3].
+      real(wp) :: hidden = 0.0_wp     !< Water that Newton's method may lose where nothing flows [m3].
    end type water_t
 
    type, extends(observer_t) :: water_alarm_t

@@ -404,8 +404,8 @@ def stamped(name, height, overlap, load, penalty):
 
 
 def test_what_fades_over_a_stage_is_no_measure_of_its_error():
-    # An overlap of 1 to 10 micrometres at a penalty of 1e11 to 1e13 kN/m3 presses with up to 1e6 kN until the first step
-    # is solved, and is spread over the stage where it is not: an answer is that of the load of 5 kN, or none.
+    # An overlap of 1 to 10 micrometres at a penalty of 1e11 to 1e13 kN/m3 presses with up to 1e6 kN until the first
+    # step is solved, and is spread over the stage where it is not: an answer is that of the load of 5 kN, or none.
     found = 0
     for penalty in (1e11, 1e12, 1e13):
         for overlap in (1e-6, 1e-5):

@@ -316,7 +316,7 @@ def test_a_motion_that_begins_with_a_velocity():
 
 
 def test_a_support_that_takes_back_and_a_plate_below_a_buffer():
-    # hold means the values of the stage's start, also where it begins later. What a mass on a spring presses is pressed.
+    # hold means the values of the stage's start, also where it begins later. A mass on a spring presses what is below.
     block = """&scene name = 'b' geometry = 'plane_strain' gravity = 9.81 /
 &mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
 &elastic name = 'e' young = 1e4 poisson = 0.2 /

@@ -340,7 +340,7 @@ def test_saturated_ground_at_no_suction_begins_under_rain():
 
 
 def test_ground_that_pore_pressures_move_creates_no_energy():
-    # Without loads or weight the pores do all work: the rise of a water pressure below, a suction that nothing balances.
+    # Without loads or weight the pores do all work: a water pressure that rises below, a suction that nothing balances.
     column = """&scene name = 'pores' geometry = 'plane_strain' fields = '{fields}' step_tolerance = 1e-3 /
 &mesh r = 0, 0.5 r_cells = 1 z = 0, 1 z_cells = 10 /
 &elastic name = 'soil' young = 1e4 poisson = 0.25 /
