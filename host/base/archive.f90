@@ -16,7 +16,7 @@ module archive
 
    character(*), parameter :: CHECKPOINT = 'checkpoint.h5'   !< Name of the archive of a run.
    character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT_OF_FILE = '22'   !< Grows with every change of what is stored.
+   character(*), parameter :: FORMAT_OF_FILE = '23'   !< Grows with every change of what is stored.
    real(wp), parameter :: LARGEST_WHOLE = 2.0_wp**53   !< Whole numbers are stored as real ones, exact up to here.
 
    type :: archive_t

@@ -3,11 +3,13 @@
 !> before the step, and a matrix that is wanted after a residual is formed with them: neither asks the material.
 !> docs/theory/host.md section 5.4.
 module carried_slopes
+   use archive, only: archive_t
    use kinds, only: wp
    use material_point, only: response_t, swollen
    implicit none (type, external)
    private
-   public :: slopes_t, new_slopes, keep_slopes, follow_slopes, kept_response, BY_MATERIAL, BY_SLOPES, AS_BEFORE
+   public :: slopes_t, new_slopes, keep_slopes, follow_slopes, kept_response, exchange_slopes
+   public :: BY_MATERIAL, BY_SLOPES, AS_BEFORE
 
    ! What gives the response of the points in a pass over the elements.
    integer, parameter :: BY_MATERIAL = 0   !< The material.
@@ -44,6 +46,24 @@ contains
          slopes%water(2, first:last) = answer%dsw_dpc(:n)
       end associate
    end subroutine keep_slopes
+
+   !> Exchanges the slopes with an archive: the next step begins with them.
+   subroutine exchange_slopes(slopes, archive)
+      type(slopes_t), intent(inout) :: slopes
+      type(archive_t), intent(inout) :: archive
+      real(wp) :: strain(PLANE**2, size(slopes%strain, 3))
+
+      strain = reshape(slopes%strain, shape(strain))
+      call archive%enter('slopes')
+      call archive%exchange('known', slopes%known, 'whether the next step begins with slopes of the material')
+      if (slopes%known) then
+         call archive%exchange('strain', strain, 'kPa', 'd effective stress/d strain of the points')
+         call archive%exchange('suction', slopes%suction, '-', 'd effective stress/d suction of the points')
+         call archive%exchange('water', slopes%water, '-, 1/kPa', 'd S_w/d volume strain and d S_w/d suction')
+      end if
+      call archive%leave('slopes')
+      slopes%strain = reshape(strain, shape(slopes%strain))
+   end subroutine exchange_slopes
 
    !> Takes the answer that straight lines along the slopes give; the void ratio is exact. docs/theory/host.md section
    !> 5.4; the void ratio: section 3.2; S_w is kept between 0 and 1. n points of the mesh from `first` on.

@@ -28,8 +28,9 @@ contains
          allocate (constraint%fixed(n), source=.false.)
          allocate (constraint%limited_by(n), constraint%body(n), source=0)
          allocate (constraint%air(nodes), source=.false.)
-         allocate (constraint%target(n), constraint%load_0(n), constraint%load_1(n), constraint%offered_0(n), &
-                   constraint%offered_1(n), constraint%offset(n), constraint%mass(n), source=0.0_wp)
+         allocate (constraint%target(n), constraint%load_0(n), constraint%load_1(n), constraint%faded(n), &
+                   constraint%offered_0(n), constraint%offered_1(n), constraint%offset(n), constraint%mass(n), &
+                   source=0.0_wp)
          allocate (constraint%air_target(nodes), source=0.0_wp)
       end associate
       allocate (constraint%linear(0), constraint%springs(0))

@@ -66,7 +66,8 @@ contains
                      if (one%saturation > 0.0_wp) state%s(p) = one%saturation
                   end if
                   call set_stress(model, ground, e, gp%x, state%s(p), state%stress(:, p))
-                  call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
+                  ! Ground that joins later comes without stress, and no &initial can give it one.
+                  if (ground%present(e)) call note_tension(region%law, state%stress(:, p), gp%x(2), tension)
                end associate
                associate (own => state%state(model%domain%before_state(e) + (g - 1)*region%law%n_state + 1: &
                                              model%domain%before_state(e) + g*region%law%n_state))

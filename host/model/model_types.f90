@@ -94,6 +94,7 @@ module model_types
       real(wp), allocatable :: corners(:, :)         !< (2, corners) of its own face, body on the left [m].
       real(wp) :: mass = 0.0_wp, force = 0.0_wp
       logical :: heavy = .false.
+      logical :: on_buffer = .false.                 !< A &buffer may press it down.
       integer :: node = 0                            !< It carries the plate's u_z: its own, or of the boundary.
       real(wp) :: penalty = 0.0_wp                   !< Springs that tie the boundary to it [kN/m3]; 0: they share u_z.
       class(plate_motion_t), allocatable :: motion

@@ -34,6 +34,7 @@ contains
       call look_at_held_water(model)
       do i = 1, size(model%fixes)
          call look_at_motion(model, model%fixes(i))
+         call look_at_return(model, model%fixes(i))
          call look_at_zero(model, model%fixes(i))
       end do
       do i = 1, size(model%plates)
@@ -251,6 +252,25 @@ contains
       end associate
    end subroutine look_at_motion
 
+   !> Warns of a support that begins within a stage and holds what was there where the stage began: it takes it back.
+   subroutine look_at_return(model, fix)
+      type(model_t), intent(in) :: model
+      type(fix_t), intent(in) :: fix
+      integer :: s
+
+      if (.not. fix%hold) return
+      do s = 1, size(model%stages)
+         associate (stage => model%stages(s))
+            if (.not. fix%in_stage(s) .or. fix%from <= stage%start + SPACINGS*spacing(stage%start) .or. &
+                fix%from >= stage%start + stage%duration) cycle
+            call print_warning(place_of(fix)//'hold = ''yes'' takes '''//trim(fix%group_name)//''' back at '// &
+               short(fix%from)//' s, at once, to what it was where stage '//trim(stage%name)//' began. To hold it '// &
+               'as it is then, let a stage begin at that time and limit this &fix to it.')
+            return
+         end associate
+      end do
+   end subroutine look_at_return
+
    !> Warns of a prescribed displacement that goes on after a stage that sets displacements to zero.
    subroutine look_at_zero(model, fix)
       type(model_t), intent(in) :: model
@@ -295,7 +315,7 @@ contains
          'the force of the plate '''// &
          trim(plate%name)//''' is '//short(maxval(abs(forces))/area)//' kPa on its '//short(area)//' m2; forces '// &
          'are in kN.')
-      if (minval(forces) < 0.0_wp .or. (plate%heavy .and. model%domain%gravity > 0.0_wp)) return
+      if (plate%on_buffer .or. minval(forces) < 0.0_wp .or. (plate%heavy .and. model%domain%gravity > 0.0_wp)) return
       if (plate%group == 0) then
          if (plate%corners(1, 2) < plate%corners(1, 1)) return
       end if

@@ -4,7 +4,7 @@
 !> a stage or contact where its name says so.
 module alarms
    use acting_places, only: ground_of
-   use contact_alarm, only: warn_of_overlaps, warn_of_penetration
+   use contact_alarm, only: warn_of_overlaps, warn_of_penetration, warn_of_rounding
    use faults, only: fault_t
    use kinds, only: wp
    use model_types, only: now_in
@@ -43,6 +43,7 @@ contains
          call warn_of_penetration(run)
          call warn_of_pressures(run, self%lines)
          if (run%last) call warn_of_strain(run)
+         if (run%last) call warn_of_rounding(run)
       end select
    end subroutine hear
 

@@ -1,6 +1,6 @@
 ! SPDX-License-Identifier: MIT
 !> Warnings of contacts: surfaces that overlap where they begin to act, or that have penetrated each other without
-!> pressure.
+!> pressure; forces that are little more than rounding.
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
@@ -10,7 +10,7 @@ module contact_alarm
    use unknown_fields, only: AT_U_Z
    implicit none (type, external)
    private
-   public :: warn_of_overlaps, warn_of_penetration
+   public :: warn_of_overlaps, warn_of_penetration, warn_of_rounding
 
    !> Depth over the length of the edge from which the warning is given: a curved surface that rolls on leaves about an
    !> eighth of the ratio of edge length to radius, 1e-3 with a mesh that is fine enough for contact [-].
@@ -20,6 +20,7 @@ module contact_alarm
    real(wp), parameter :: ROUNDING_DEPTH = 1.0e-6_wp
    !> Times the depth to which a heavy plate is placed: its share under the edges of the plate differs from the mean.
    real(wp), parameter :: PLACED = 2.0_wp
+   real(wp), parameter :: NOTABLE = 1.0e-3_wp   !< Share of the forces of contacts from which their rounding is told.
 contains
    !> Warns where contacts begin to act with surfaces that overlap, on standard error: the penalty presses them apart at
    !> once. The depth to which a heavy plate is placed at the start is no overlap. docs/theory/contact.md section 4.
@@ -86,4 +87,28 @@ contains
          end associate
       end do
    end subroutine warn_of_penetration
+
+   !> Warns at the end of a stage without inertia of contacts that press with little more than the rounding of places,
+   !> whose differences gaps are, times the penalty. docs/theory/host.md section 5.1.
+   subroutine warn_of_rounding(run)
+      type(run_t), intent(in) :: run
+      real(wp) :: thrust
+      integer :: i
+
+      if (size(run%model%contacts) == 0 .or. run%stage%has_inertia) return
+      associate (contacts => run%system%contacts)
+         thrust = 0.0_wp
+         do i = 1, size(run%model%contacts)
+            associate (t => contacts%interfaces(i))
+               if (.not. t%acts) cycle
+               if (allocated(t%spring)) return
+               thrust = thrust + sum(t%result%weight*t%result%pressure)
+            end associate
+         end do
+         if (thrust > 0.0_wp .and. contacts%rounding > NOTABLE*thrust) call print_warning('stage '// &
+            trim(run%stage%name)//': contacts press with '//short(thrust)//' kN, of which '// &
+            short(contacts%rounding)//' kN may be rounding: gaps are differences of places, and the penalty '// &
+            'multiplies their digits. Set a smaller penalty, or measure heights from near the contact.')
+      end associate
+   end subroutine warn_of_rounding
 end module contact_alarm

@@ -235,7 +235,7 @@ contains
       type(run_t), intent(in) :: run
       type(ledger_t), intent(inout) :: ledger
       type(relative_t) :: rel
-      real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity
+      real(wp) :: middle(AT_P_W:AT_P_C, 6), drive(2), kappa, gravity, rho_a
       type(means_t) :: mean
       integer :: g, n_p
 
@@ -254,8 +254,9 @@ contains
             ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
             if (.not. run%domain%with_c) cycle
             kappa = law%intrinsic*rel%a/f%eta_a
-            drive = matmul(middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p), gp%dm(:n_p, :)) + [0.0_wp, &
-               f%rho_a*gravity]
+            rho_a = f%rho_a
+            if (f%ideal_gas) rho_a = rho_a*(1 + dot_product(sum(middle(:, :n_p), 1), gp%m(:n_p))/f%p_ref)
+            drive = matmul(middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p), gp%dm(:n_p, :)) + [0.0_wp, rho_a*gravity]
             ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
          end associate
       end do
@@ -295,7 +296,7 @@ contains
       real(wp) :: work
 
       ledger%largest_work = max(ledger%largest_work, abs(ledger%loads), abs(ledger%supports), abs(ledger%gravity), &
-                                ledger%kinetic_0, -ledger%skeleton)
+                                ledger%kinetic_0, -ledger%skeleton, -ledger%pores)
       ! A residual may be that share of the forces, whose magnitudes are the scale.
       work = run%stage%tolerance*sum(run%assembly%scale*abs(of_unknowns(run%dofs, run%next%x - run%state%x)), &
                                      mask=run%dofs%field <= DISPLACEMENTS)

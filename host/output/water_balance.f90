@@ -4,6 +4,7 @@
 !> scheme count here. docs/theory/host.md section 9.2.
 module water_balance
    use archive, only: archive_t
+   use convergence, only: RATE_SHARE
    use springs, only: water_through_dashpots
    use faults, only: fault_t
    use kinds, only: wp
@@ -30,6 +31,7 @@ module water_balance
       real(wp) :: received = 0.0_wp   !< Water through loads, less what dashpots let out [m3].
       real(wp) :: left = 0.0_wp       !< Water through prescribed pressures, less the rain [m3].
       real(wp) :: moved = 0.0_wp      !< Water through boundaries, in and out [m3].
+      real(wp) :: hidden = 0.0_wp     !< Water that Newton's method may lose where nothing flows [m3].
    end type water_t
 
    type, extends(observer_t) :: water_alarm_t
@@ -50,6 +52,7 @@ contains
          call archive%exchange('water_received', w%received, 'm3', 'water through loads in the stage')
          call archive%exchange('water_left', w%left, 'm3', 'water through prescribed pressures in the stage')
          call archive%exchange('water_moved', w%moved, 'm3', 'water through boundaries in the stage')
+         call archive%exchange('water_hidden', w%hidden, 'm3', 'what Newton''s method may leave where nothing flows')
       end associate
    end subroutine exchange
 
@@ -89,7 +92,8 @@ contains
 
       associate (water => self%water, stage => run%stage)
          missing = water%received - water%left - water%gained
-         if (run%domain%full_rate .and. abs(missing) > max(ALARMING_SHARE*water%moved, INSIDE_SHARE*water%turned)) then
+         if (run%domain%full_rate .and. abs(missing) > max(ALARMING_SHARE*water%moved, INSIDE_SHARE*water%turned, &
+                                                              water%hidden)) then
             of_what = short(100*abs(missing)/water%turned)//' % of what has moved in its pores'
             if (water%moved > 0.0_wp) of_what = short(100*abs(missing)/water%moved)//' % of what has come and gone'
             call print_warning('stage '//trim(stage%name)//': '//short(abs(missing))//' m3 of water are '// &
@@ -144,6 +148,8 @@ contains
             if (run%dofs%field(w) /= AT_P_W) cycle
             node = run%dofs%node(w)
             c = run%dofs%of(AT_P_C, node)
+            water%hidden = water%hidden + scheme%dt*run%newton%tolerance*RATE_SHARE &
+                                          *run%assembly%floor(merge(c, w, c > 0))
             inflow = inflow_at(w)
             outflow = 0.0_wp
             if (constraint%fixed(w)) outflow = reaction(w)

@@ -19,9 +19,8 @@ module checkpoints
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
 contains
-   !> Writes a checkpoint of a run that has a folder where it is due, and ends a run that is interrupted. A run that is
-   !> taken up here has no factors and no slopes: one that goes on forgets them. Faults: EXIT_OUTPUT, it cannot be
-   !> written; EXIT_INTERRUPTED.
+   !> Writes a checkpoint of a run that has a folder where it is due, and ends a run that is interrupted. Answers do not
+   !> depend on whether one is written. Faults: EXIT_OUTPUT, it cannot be written; EXIT_INTERRUPTED.
    subroutine keep_run(run, observers, fault)
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
@@ -39,8 +38,6 @@ contains
       if (due) then
          call write_checkpoint(observers%folder, run, observers, fault)
          run%kept = clock()
-         run%system%factored = .false.
-         run%assembly%slopes%known = .false.
          call add_elapsed(run%seconds_output, t0)
       end if
       if (fault%code == 0 .and. interrupted() .and. &

@@ -3,9 +3,10 @@
 module run_state
    use, intrinsic :: iso_fortran_env, only: int64
    use archive, only: archive_t
+   use carried_slopes, only: exchange_slopes
    use kinds, only: wp
    use error_norms, only: rate_memory_t, new_memory, exchange_memory
-   use linear_system, only: join_unknowns
+   use linear_system, only: exchange_factors, join_unknowns
    use start_findings, only: tension_t
    use model_types, only: problem_t, term_box_t, gravity_at
    use porous_domain, only: copy_state, exchange_state
@@ -114,11 +115,13 @@ contains
       if (archive%reading) call reset_control(run)
       call exchange_control(run%control, archive)
       if (allocated(run%system%contacts)) call exchange_pairs(run%dofs%n, run%system%extra, archive)
+      if (archive%reading .and. archive%good) call join_unknowns(run, reshape([integer ::], [2, 0]))
+      call exchange_slopes(run%assembly%slopes, archive)
+      call exchange_factors(run, archive)
       if (.not. archive%reading .or. .not. archive%good) return
       run%stage => run%model%stages(run%at%stage)
       run%state%gravity = gravity_at(run%model, run%state%time)
       call copy_state(run%state, run%next)
-      call join_unknowns(run, reshape([integer ::], [2, 0]))
    end subroutine exchange_run
 
    !> Exchanges a control, made by reset_control, with an archive.

@@ -145,7 +145,9 @@ contains
             if (fault%code == 0) call run%terms(i)%term%before_step(dt, run%problem_t, fault)
          end do
          if (fault%code /= 0) return
+         c%faded = 0.0_wp
          if (allocated(run%at%sudden)) then
+            c%faded = (share_over(run, until) - share_over(run, run%state%time))*run%at%sudden
             c%load_0 = c%load_0 - (1 - share_over(run, run%state%time))*run%at%sudden
             c%load_1 = c%load_1 - (1 - share_over(run, until))*run%at%sudden
          end if

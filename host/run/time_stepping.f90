@@ -22,6 +22,8 @@ module time_stepping
    public :: run_stages
 
    integer, parameter :: GOOD_STEPS = 2           !< Accepted steps in a row after which a cut step grows back.
+   integer, parameter :: CUTS_IN_VAIN = 2         !< After so many a step with little air left gets more iterations.
+   integer, parameter :: UNTIL_AIR_IS_GONE = 60   !< Halvings of a correction down to its rounding.
 contains
    !> Runs all stages from where the run stands. docs/theory/host.md section 4. Faults are those of begin_stage,
    !> try_step and the observers; the first ends the run, and the observers are still told its end.
@@ -65,6 +67,10 @@ contains
          call follow_newton(run%newton%tolerance, run%domain%regions)
          run%newton%roughness = roughness(run%domain%regions)
          run%newton%negligible = negligible_changes(run)
+         ! Corrections halve where the last air leaves, whatever the step: docs/theory/host.md section 5.1.
+         run%newton%max_iterations = run%stage%max_iterations
+         if (run%stage%controlled .and. run%domain%with_c .and. run%at%good == 0 .and. run%at%cuts >= CUTS_IN_VAIN) &
+            run%newton%max_iterations = max(run%stage%max_iterations, UNTIL_AIR_IS_GONE)
          call try_step(next_step(run), run, accepted, fault)
          if (fault%code /= 0) return
          if (accepted) then

@@ -16,7 +16,7 @@ module convergence
    implicit none (type, external)
    private
    public :: measure, good_enough, field_scales, water_of, water_scale, body_scale, is_body, rounding_in
-   public :: note_stagnation, measure_in, linear_tolerance, MOST_IN_VAIN
+   public :: note_stagnation, measure_in, linear_tolerance, MOST_IN_VAIN, RATE_SHARE
 
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
    !> Share of all forces that their sums leave, some hundred roundings. No tolerance of a change asks for less.

@@ -2,6 +2,7 @@
 !> The linear system of an iteration: contacts in its pattern, factors that are kept while they serve, and where the
 !> time goes. docs/theory/host.md section 6.
 module linear_system
+   use archive, only: archive_t
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
    use convergence, only: field_scales, water_scale, water_of, body_scale, is_body
@@ -12,7 +13,7 @@ module linear_system
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_W
    implicit none (type, external)
    private
-   public :: solve_step, solve_anew, asked_for, update_contacts, join_unknowns
+   public :: solve_step, solve_anew, asked_for, update_contacts, join_unknowns, exchange_factors
 
    !> [kN] or [m3/s]: a field in which nothing acts yet is not refined to less.
    real(wp), parameter :: LEAST_SCALE = 1.0e-12_wp
@@ -78,6 +79,7 @@ contains
          system%fixed = s%constraint%fixed
          system%air = s%constraint%air
          system%active = active_nodes(s)
+         system%made_of = s%assembly%values
          call solve_by_factors(system%sparse, s%assembly%values, rhs, weight, tolerance, MOST_STEPS, dx, steps, status)
          ! What rounding leaves is Newton's to judge.
          if (status == INACCURATE) status = SOLVED
@@ -92,6 +94,45 @@ contains
       active_nodes = 0
       if (allocated(s%system%contacts)) active_nodes = s%system%contacts%active
    end function active_nodes
+
+   !> Exchanges with an archive what the first solution of the next step depends on. Factors are made again of the same
+   !> matrix, so that they are the same.
+   subroutine exchange_factors(s, archive)
+      class(solution_t), intent(inout) :: s
+      type(archive_t), intent(inout) :: archive
+      integer, allocatable :: fixed(:), air(:)
+      integer :: status
+
+      associate (system => s%system)
+         call archive%enter('factors')
+         call archive%exchange('first_error', system%first_error, '-', &
+                               'error of the last step after its first correction')
+         call archive%exchange('known', system%factored, 'whether factors of an earlier matrix serve the next step')
+         if (system%factored) then
+            if (.not. archive%reading) then
+               fixed = merge(1, 0, system%fixed)
+               air = merge(1, 0, system%air)
+            end if
+            call archive%exchange_allocatable('made_of', system%made_of, 'mixed', 'values of that matrix')
+            call archive%exchange_allocatable('fixed', fixed, '-', 'unknowns that were fixed in it')
+            call archive%exchange_allocatable('air', air, '-', 'nodes whose air pressure was given in it')
+            call archive%exchange('active', system%active, '-', 'nodes that were in contact in it', least=0)
+         end if
+         call archive%leave('factors')
+         if (.not. (archive%reading .and. archive%good .and. system%factored)) return
+         if (size(system%made_of) /= size(s%pattern%col) .or. size(fixed) /= s%dofs%n .or. &
+             size(air) /= size(s%dofs%of, 2)) then
+            call archive%refuse()
+            return
+         end if
+         system%fixed = fixed == 1
+         system%air = air == 1
+         call analyse(system%sparse, s%pattern%row, s%pattern%col, status)
+         system%analysed = .true.
+         call factorise(system%sparse, system%made_of, status)
+         if (status /= SOLVED) call archive%refuse()
+      end associate
+   end subroutine exchange_factors
 
    !> Finds the magnitude of the right side of every field, rows of prescribed values included; that of the
    !> displacements is one. docs/theory/host.md section 5.1.

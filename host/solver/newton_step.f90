@@ -249,9 +249,19 @@ contains
          ! Roundings of the unknowns are found once, of the first iterate, where a plate may not have moved yet.
          if (allocated(system%contacts)) assembly%unresolved = max(system%contacts%rounding, at%rounded(1))
          assembly%unresolved = assembly%unresolved/solution%newton%tolerance
-         if (solution%log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, .not. solution%constraint%fixed))
+         if (solution%log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, is_free(solution)))
       end associate
    end subroutine note_equations
+
+   !> Unknowns whose balance is solved: what holds a prescribed value, or air pressure, is no residual.
+   pure function is_free(solution) result(free)
+      class(solution_t), intent(in) :: solution
+      logical :: free(solution%dofs%n)
+
+      associate (dofs => solution%dofs, constraint => solution%constraint)
+         free = .not. (constraint%fixed .or. (dofs%field == AT_P_C .and. constraint%air(dofs%node)))
+      end associate
+   end function is_free
 
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
    !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.
@@ -267,7 +277,7 @@ contains
          call solution%choose(at%rhs, unsettled)
          if (allocated(system%contacts)) unsettled = unsettled .or. system%contacts%unsettled
          call measure(solution, at%rhs)
-         norm = norm2(pack(at%rhs, .not. constraint%fixed))
+         norm = norm2(pack(at%rhs, is_free(solution)))
          ! A step that is driven by prescribed values alone begins with a residual that is almost zero.
          if (log%iterations == 1) then
             log%first_error = log%error
@@ -442,7 +452,8 @@ contains
             if (allocated(at%touched)) assembly%change = assembly%change + &
                min(abs(assembly%residual - without), abs(assembly%residual - without - at%touched))
             where (solution%dofs%field <= DISPLACEMENTS)
-               assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0)
+               assembly%change = assembly%change + scheme%l_f*abs(constraint%load_1 - constraint%load_0 &
+                                                                  - constraint%faded)
             elsewhere
                assembly%change = assembly%scale
             end where

@@ -34,6 +34,8 @@ module prescribed_values
       logical, allocatable :: fixed(:)        !< Unknowns
       real(wp), allocatable :: target(:)      !< values of the unknowns that are fixed, at the end of the step
       logical, allocatable :: released(:, :)  !< (fixes, nodes) Where no &fix acts in this step; not allocated: nowhere.
+      real(wp), allocatable :: faded(:)       !< Change of load_0 to load_1 by what acted at once and is spread over the
+                                              !< stage [kN]. (unknowns)
       logical, allocatable :: air(:)          !< Nodes with a prescribed air pressure: of tied ones the first
       real(wp), allocatable :: air_target(:)
       integer, allocatable :: limited_by(:)   !< Group of the mesh whose upper limit an unknown has; 0: none. Its target

@@ -85,6 +85,7 @@ module solution
       logical :: analysed = .false.
       logical :: reuse = .true.               !< Factors may serve later matrices.
       logical :: factored = .false.           !< There are factors worth trying.
+      real(wp), allocatable :: made_of(:)     !< (entries) Values of the matrix that the factors belong to.
       logical, allocatable :: fixed(:), air(:)   !< Unknowns and air pressures that were fixed when the factors were
                                                  !< made.
       logical :: indefinite = .false.         !< The last solution found its matrix so, see factorise.

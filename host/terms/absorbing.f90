@@ -233,7 +233,7 @@ contains
       type(batch_report_t) :: report
       type(relative_t) :: rel
       real(wp), dimension(problem%domain%rule) :: suction, s, n
-      real(wp) :: strain(6, problem%domain%rule), p(2), rho, c_p, c_s, modulus, shear, slope
+      real(wp) :: strain(6, problem%domain%rule), p(2), p_a, rho, c_p, c_s, modulus, shear, slope
       real(wp), allocatable :: before(:, :), after(:, :)
       integer :: g, first, last
 
@@ -244,9 +244,11 @@ contains
          last = e*m%rule
          law => law_of(m, problem%next, m%region_of(e))
          strain = 0.0_wp
+         p_a = 0.0_wp
          do g = 1, m%rule
             p = pressures_at(m, e, g, state%x(AT_P_W:, m%carriers(:m%n_carriers(e), e)))
             suction(g) = p(2)
+            p_a = p_a + sum(p)/m%rule
          end do
          before = reshape(state%state(m%before_state(e) + 1:m%before_state(e + 1)), [law%n_state, m%rule])
          after = before
@@ -266,7 +268,7 @@ contains
          slope = 0.0_wp
          if (region%with_c) slope = sum(response%dsw_dpc(:m%rule))/m%rule
          if (region%with_w .and. (region%drainage == COUPLED .or. region%drainage == UNDRAINED)) modulus = modulus &
-            + pore_stiffness(m, n(1), sum(s)/m%rule, slope)
+            + pore_stiffness(m, n(1), sum(s)/m%rule, slope, p_a)
          c_p = side%c_p
          c_s = side%c_s
          if (.not. (max(c_p, modulus) > 0.0_wp .and. max(c_s, shear) > 0.0_wp)) then
@@ -288,16 +290,19 @@ contains
    end subroutine ground_behind
 
    !> Finds what fluids that cannot leave add to the constrained modulus [kPa].
-   pure real(wp) function pore_stiffness(domain, n, s, slope) result(stiffness)
+   pure real(wp) function pore_stiffness(domain, n, s, slope, p_a) result(stiffness)
       type(domain_t), intent(in) :: domain
       real(wp), intent(in) :: n, s, slope   !< Porosity, saturation, its change with suction [1/kPa].
-      real(wp) :: c(2, 2), room, det
+      real(wp), intent(in) :: p_a           !< Air pressure [kPa].
+      real(wp) :: c(2, 2), room, det, k_a
 
       associate (fluids => domain%fluids, h => domain%fluids%henry)
          room = 0.0_wp
          if (domain%with_c) room = 1 - (1 - h)*s
+         k_a = fluids%k_a
+         if (fluids%ideal_gas) k_a = fluids%p_ref + p_a
          ! Sum of the balances, and air, against p_w and p_c: docs/theory/host.md sections 2.2 and 2.3.
-         c(2, 1) = n*room/fluids%k_a
+         c(2, 1) = n*room/k_a
          c(1, 1) = n*s/fluids%k_w + c(2, 1)
          stiffness = 1/c(1, 1)
          if (.not. domain%with_c) return

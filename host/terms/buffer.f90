@@ -66,6 +66,7 @@ contains
          call raise(fault, EXIT_INPUT, place_of(one)//'stage '''//trim(model%stages(i)%name)// &
                     ''' zeroes its displacements, also of a plate that is joined to a boundary, which would '// &
                     'change the force of the buffer; name the stages of the buffer.')
+      model%plates(one%plates(2))%on_buffer = .true.
       if (.not. allocated(self%all)) allocate (self%all(0))
       self%all = [self%all, one]
       self%wanted = .true.

@@ -5,6 +5,7 @@
 module run_off
    use kinds, only: wp
    use boundary_conditions, only: acts
+   use convergence, only: RATE_SHARE
    use degrees_of_freedom, only: of_unknowns
    use faults, only: fault_t, raise, EXIT_INPUT
    use key_table, only: key_table_t
@@ -205,7 +206,7 @@ contains
       real(wp), intent(in) :: residual(:)
       logical, intent(inout) :: changed
       real(wp) :: side, slope, least
-      integer :: i
+      integer :: i, parts
 
       self%stuck = 0
       associate (c => problem%constraint, pattern => problem%pattern, values => problem%assembly%values)
@@ -217,7 +218,11 @@ contains
                if (c%air(node)) slope = slope - values(entry_of(pattern, i, problem%dofs%of(AT_P_C, node)))
                side = residual(i) + abs(slope)*(problem%next%x(problem%dofs%field(i), node) - c%target(i))
             end associate
-            least = LEAST_REACTION*problem%newton%tolerance*problem%assembly%scale(i)
+            ! Water at rest has no flows but their rounding: the parts that cancel are the measure there.
+            parts = problem%dofs%of(AT_P_C, problem%dofs%node(i))
+            if (parts == 0) parts = i
+            least = LEAST_REACTION*problem%newton%tolerance*max(problem%assembly%scale(i), &
+                                                                RATE_SHARE*problem%assembly%floor(parts))
             if (c%fixed(i) .and. side < -least) then
                if (self%releases(i) >= MOST_RELEASES) then
                   self%stuck = i

@@ -148,6 +148,8 @@ contains
       text = ''
       do i = 1, size(self%changes)
          associate (s => self%changes(i))
+            ! What it was made for it still is.
+            if (.not. abs(factor_at(model, s%amplitude, time) - 1) > SAME) cycle
             text = text//'. By &strength '//trim(s%parameter_name)//' of '''//trim(s%material_name)//''' is at '// &
                    short(factor_at(model, s%amplitude, time))//' of its value: it may have failed'
             do k = 1, size(s%in_region)

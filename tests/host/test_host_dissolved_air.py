@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Air that the water of a scene dissolves: what a flow carries of it, and soil that nothing leaves, coupled or not."""
+"""Air that the water of a scene dissolves: what a flow carries of it, and soil that nothing leaves, coupled or not; a
+gas whose density and stiffness follow its pressure."""
 from checking import check, work
 from host_program import ran
 import tables  # noqa: E402 (checking knows its folder)
@@ -90,3 +91,56 @@ def test_a_tight_tolerance_is_met_at_any_step():
         if ran(name, text.replace("dt = 0.05", f"dt = {dt}")):
             rows = tables.numbers(work / name / "ledger.csv")
             check(f"steps of {dt} s: none is cut, the last may be rounding", len(rows) <= round(1/dt) + 1, len(rows))
+
+
+#: A gas a hundred times as heavy as air at 50 kPa everywhere: its weight alone drives it.
+HEAVY = """&scene name = 'heavy' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 9.81 /
+&mesh r = 0, 0.2 r_cells = 1 z = 0, 1 z_cells = 10 /
+&fluids gas = 'ideal' rho_a = 0.12 rho_w = 1e-9 /
+&elastic name = 'soil' young = 1e9 poisson = 0 /
+&retention name = 'r' law = 'power' a = 0.005 b = 1 /
+&permeability name = 'k' intrinsic = 1e-12 law = 'constant' k_rw = 1e-9 k_ra = 1 /
+&region material = 'soil' retention = 'r' permeability = 'k' void_ratio = 0.8 rho_s = 0 /
+&initial p_w = -50 p_c = 100 /
+&stage name = 'flow' analysis = 'quasi_static' duration = 10 dt = 1 tolerance = 1e-8 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'all' field = 'p_a' value = 50 /
+&fix group = 'all' field = 'p_c' value = 100 /
+"""
+#: A wave in a column of little saturation: an ideal gas of 20 kPa is as stiff as a gas of that modulus.
+WAVE = """&scene name = 'wave' geometry = 'plane_strain' fields = 'u-p_w-p_c' /
+&mesh r = 0, 0.5 r_cells = 1 z = 0, 10 z_cells = 20 /
+&fluids {gas} /
+&elastic name = 'soil' young = 1e3 poisson = 0.3 /
+&retention name = 'r' law = 'power' a = 0.005 b = 1 /
+&permeability name = 'k' intrinsic = 1e-14 law = 'constant' /
+&region material = 'soil' retention = 'r' permeability = 'k' void_ratio = 0.8 /
+&initial p_w = -20 p_c = 20 stress = 'uniform' sigma = -18, -18, -18 /
+&history name = 'h' kind = 'haversine' period = 0.05 /
+&stage name = 'a' analysis = 'dynamic' duration = 0.6 dt = 1e-3 tolerance = 1e-6 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&absorbing group = 'bottom' /
+&load group = 'top' kind = 'pressure' value = 0.01 history = 'h' /
+&point name = 'top' r = 0 z = 10 /
+"""
+
+
+def test_an_ideal_gas_is_as_heavy_as_its_pressure_makes_it():
+    # k/eta_a (rho_a g (1 + p_a/p_ref))^2 over 0.2 m3 for 10 s: what the ledger says of seepage.
+    if not ran("heavy", HEAVY):
+        return
+    known = 1e-12/1.8e-8*(0.12*9.81*(1 + 50/101.325))**2*0.2*10
+    seepage = tables.columns(work / "heavy/ledger.csv")["seepage"][-1]
+    check("dissipated by the flow of a heavy gas", abs(seepage/known - 1) < 1e-3, (seepage, known))
+
+
+def test_an_absorbing_side_has_the_stiffness_of_an_ideal_gas():
+    ends = []
+    for name, gas in (("ideal", "gas = 'ideal' p_ref = 20"), ("constant", "k_a = 20")):
+        if not ran(f"wave_{name}", WAVE.format(gas=gas)):
+            return
+        ends.append(tables.columns(work / f"wave_{name}/histories.csv")["top.u_z"][-1])
+    check("the drift that the dashpots leave is one", abs(ends[0]/ends[1] - 1) < 1e-4, ends)

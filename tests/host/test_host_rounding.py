@@ -2,7 +2,6 @@
 """What an error of Newton's method is measured by where hardly any force is there: a press fit, a plate in free flight,
 very small units, very short steps of a flow; and pressures where water cannot drain yet."""
 import re
-import re
 import sys
 
 import numpy as np
@@ -380,3 +379,47 @@ def test_water_drawn_from_a_surface_is_missing_below(aired):
     if ran(f"drawn_{aired}", drawn):
         share = water_gained(f"drawn_{aired}") / (-1e-6 * 0.2 * 9e4)
         check(f"air at {aired}: what has left is missing", abs(share - 1) < 2e-3, share)
+
+
+STAMP = """&scene name = 'stamp' geometry = 'axisymmetric' fields = 'u' /
+&mesh r = 0, 0.15, 0.5 r_cells = 3, 3 z = {base}, {top} z_cells = 4 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&region material = 'soil' void_ratio = 0 /
+&plate name = 'p' r = 0, 0.15 z = {z} mass = 1e-5 force = -{load} /
+&contact name = 'c' slave = 'top' master = 'p' penalty = {penalty} /
+&stage name = 's' analysis = 'static' duration = 1 dt = 1 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'right' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+&fix group = 'bottom' field = 'u_r' /
+"""
+
+
+def stamped(name, height, overlap, load, penalty):
+    """Thrust of a loaded plate [kN], None where no answer was found, and what was said."""
+    done = start(name, STAMP.format(base=height - 0.5, top=height, z=height - overlap, load=load, penalty=penalty))
+    if done.returncode:
+        return None, done.stderr
+    return float(tables.rows(work / name / "contact.csv")[-1]["c.thrust"]), done.stderr
+
+
+def test_what_fades_over_a_stage_is_no_measure_of_its_error():
+    # An overlap of 1 to 10 micrometres at a penalty of 1e11 to 1e13 kN/m3 presses with up to 1e6 kN until the first
+    # step is solved, and is spread over the stage where it is not: an answer is that of the load of 5 kN, or none.
+    found = 0
+    for penalty in (1e11, 1e12, 1e13):
+        for overlap in (1e-6, 1e-5):
+            thrust, _ = stamped(f"stamp_{penalty:g}_{overlap:g}", 0.0, overlap, 5.0, penalty)
+            found += thrust is not None
+            check(f"penalty {penalty:g}, overlap {overlap:g}: the load or nothing", thrust is None or
+                  abs(thrust/5 - 1) < 1e-3, thrust)
+    check("two of them are found", found >= 2, found)
+
+
+def test_contact_forces_that_are_rounding_are_told():
+    # At z = 10 km places have a rounding of 2e-12 m: 2e-4 kPa at a penalty of 1e8 kN/m3, of pressures of 0.03 kPa.
+    for height, load, told in ((0.0, 2e-3, False), (1e4, 5.0, False), (1e4, 2e-3, True)):
+        thrust, said = stamped(f"far_{height:g}_{load:g}", height, 1e-9, load, 1e8)
+        check(f"{load} kN at {height} m: {thrust} kN, told {told}", thrust is not None and
+              ("may be rounding" in said) == told, said)
+        check(f"{load} kN at {height} m: right, or told", told or abs(thrust/load - 1) < 1e-3, thrust)

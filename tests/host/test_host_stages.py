@@ -107,6 +107,15 @@ def test_a_body_needs_a_support_while_its_ground_is_there():
     done = start("joins", JOINS, "--check")
     check("what joins later needs none before", done.returncode == 0, (done.returncode, done.stderr))
 
+    # Advice that would be refused: the stress of sand that joins later is not asked for, that of the rest is.
+    sand = JOINS.replace("&elastic name = 's' young = 1e4 poisson = 0 /", "&mud name = 's' e_0 = 0.8 /").replace(
+        "void_ratio = 0", "void_ratio = 0.8")
+    for what, stress, bare in (("no stress", "", True), ("ground of the start has stress",
+                               "&initial group = 'lower' stress = 'uniform' sigma = -20, -20, -20 /\n", False)):
+        done = start("bare", sand + stress, "--check")
+        check(f"sand that joins: {what}", done.returncode == 0 and
+              ("without effective stress" in done.stderr) == bare, (done.returncode, done.stderr))
+
 
 SUCTIONS = """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' /
 &mesh r = 0, 1 r_cells = 1 z = 0, 1, 2 z_cells = 2, 2 /

@@ -315,6 +315,27 @@ def test_a_motion_that_begins_with_a_velocity():
               == (int(words is not None), True), found)
 
 
+def test_a_support_that_takes_back_and_a_plate_below_a_buffer():
+    # hold means the values of the stage's start, also where it begins later. A mass on a spring presses what is below.
+    block = """&scene name = 'b' geometry = 'plane_strain' gravity = 9.81 /
+&mesh r = 0, 1 r_cells = 1 z = 0, 1 z_cells = 1 /
+&elastic name = 'e' young = 1e4 poisson = 0.2 /
+&region material = 'e' void_ratio = 0 /
+&stage name = 'one' analysis = 'static' duration = 1 dt = 1 /
+&stage name = 'two' analysis = 'dynamic' duration = 0.1 dt = 0.01 /
+&fix group = 'left' field = 'u_r' /
+&fix group = 'bottom' field = 'u_z' /
+"""
+    for more, told in (("from = 1.05", True), ("stages = 'two'", False), ("from = 1 stages = 'two'", False)):
+        said = lines_of("back", block + f"&fix group = 'top' field = 'u_z' hold = 'yes' {more} /\n")
+        check(f"hold {more}", any("takes 'top' back at 1.05 s" in line for line in said) == told, said)
+    said = lines_of("below", block + "&plate name = 'lo' group = 'top' mass = 0.1 /\n"
+                    "&plate name = 'up' r = 0, 1 z = 2 mass = 0.1 weight = 'yes' /\n"
+                    "&fix group = 'up' field = 'u_z' hold = 'yes' stages = 'one' /\n"
+                    "&buffer upper = 'up' lower = 'lo' stiffness = 100 /\n")
+    check("a plate below a buffer", not any("nothing presses" in line for line in said), said)
+
+
 def test_a_velocity_that_the_first_stage_takes_away_is_told():
     # A mass that falls, behind a stage that finds the balance of the weight: its velocity is gone when it falls.
     text = """&scene name = 'fall' gravity = 9.81 /

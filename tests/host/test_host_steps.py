@@ -300,3 +300,66 @@ def test_steps_end_at_breaks_and_are_the_same_after_a_restart():
     check("restart: goes on", done.returncode == 0, done.stderr)
     for file in ("ledger.csv", "histories.csv"):
         check(f"restart: same bytes of {file}", (whole / file).read_bytes() == (half / file).read_bytes())
+
+
+def test_a_checkpoint_changes_no_answer():
+    # What a run writes beside its answers is no part of them: with a checkpoint after every step, and taken up from
+    # one in the middle, the tables have the bytes of a run that writes none.
+    text = RESTART.read_text().replace("   dt_growth = 1.3\n", "").replace(
+        "checkpoint_steps = 2", "checkpoint_steps = 0\n   step_tolerance = 3e-2")
+    scene = written("kept", text)
+    folders = [work / f"kept_{every}" for every in (0, 1, 50)]
+    for folder in folders:
+        done = run(scene, folder, "--set", f"scene.checkpoint_steps={folder.name[5:]}")
+        check(f"{folder.name}: runs", done.returncode == 0, done.stderr)
+    done = run(scene, folders[-1], "--restart", folders[-1] / "checkpoint.h5")
+    check("restart: goes on", done.returncode == 0, done.stderr)
+    for folder in folders[1:]:
+        for file in ("ledger.csv", "histories.csv"):
+            check(f"same bytes of {file}", (folder / file).read_bytes() == (folders[0] / file).read_bytes(), folder)
+
+
+def test_saturated_ground_at_no_suction_begins_under_rain():
+    # Its air vanishes in the first step, in which corrections halve. All rain runs off, and the sealed column ends with
+    # water at rest: 9.81 kPa at its base.
+    done = run(written("wet", """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' gravity = 9.81 /
+&mesh r = 0, 0.2 r_cells = 1 z = 0, 1 z_cells = 10 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&retention name = 'r' law = 'van_genuchten' alpha = 0.1 n = 2 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region material = 'soil' retention = 'r' permeability = 'k' void_ratio = 0.8 /
+&initial stress = 'geostatic' surface = 1 /
+&stage name = 'wet' analysis = 'quasi_static' duration = 1e5 /
+&fix group = 'left' field = 'u_r' / &fix group = 'right' field = 'u_r' / &fix group = 'bottom' field = 'u_z' /
+&load group = 'top' kind = 'rain' value = 1e-8 /
+&point name = 'base' r = 0 z = 0 /
+"""), work / "wet")
+    check("it begins, and comes to its end", done.returncode == 0, done.stderr)
+    base = history(work / "wet", "base.p_w")[-1] if done.returncode == 0 else 0.0
+    check("water at rest below", abs(base - 9.81) < 1e-3*9.81, base)
+
+
+def test_ground_that_pore_pressures_move_creates_no_energy():
+    # Without loads or weight the pores do all work: a water pressure that rises below, a suction that nothing balances.
+    column = """&scene name = 'pores' geometry = 'plane_strain' fields = '{fields}' step_tolerance = 1e-3 /
+&mesh r = 0, 0.5 r_cells = 1 z = 0, 1 z_cells = 10 /
+&elastic name = 'soil' young = 1e4 poisson = 0.25 /
+&permeability name = 'k' intrinsic = 1e-12 /
+&region material = 'soil' void_ratio = 0.8 permeability = 'k' {more} /
+&stage name = 'go' analysis = 'dynamic' duration = 0.02 /
+&fix group = 'left' field = 'u_r' / &fix group = 'right' field = 'u_r' / &fix group = 'bottom' field = 'u_z' /
+"""
+    suction = column.format(fields="u-p_w-p_c", more="retention = 'r'") + """
+&retention name = 'r' law = 'van_genuchten' alpha = 0.1 n = 2 /
+&initial p_w = -20 p_c = 20 / &fix group = 'top' field = 'p_a' /
+"""
+    water = column.format(fields="u-p_w", more="") + """
+&history name = 'rise' times = 0, 0.002, 1 values = 0, 1, 1 /
+&fix group = 'bottom' field = 'p_w' value = 50 history = 'rise' / &fix group = 'top' field = 'p_w' /
+"""
+    for name, text in (("suction", suction), ("water", water)):
+        done = run(written(name, text), work / name)
+        check(f"{name}: comes to its end", done.returncode == 0, done.stderr)
+        ledger = tables.columns(work / name / "ledger.csv")
+        share = np.max(np.abs(ledger["imbalance"]))/np.max(np.abs(ledger["pores"]))
+        check(f"{name}: the balance of energy closes", share < 1e-3, share)

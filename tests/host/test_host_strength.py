@@ -73,6 +73,12 @@ def test_a_block_fails_where_its_strength_is_used_up():
     check("before it yields it does not move", abs(rows[-2]["top.u_z"]/rest["top.u_z"] - 1) < 1e-9, rows[-2])
 
 
+def test_a_failure_before_the_strength_changes_is_not_blamed_on_it():
+    for load, blamed in (("10", True), ("30", False)):
+        done, _ = ends(f"blame_{load}", BLOCK.replace("value = 10 history", f"value = {load} history"))
+        check(f"{load} kPa: &strength is named: {blamed}", ("By &strength" in done.stderr) == blamed, done.stderr)
+
+
 def test_a_sand_fails_where_its_ratio_is_the_strength():
     # q/p' = 0.75 stays; loose sand carries M_c f, so that it fails at f = 0.6, 0.5 s.
     _, rows = ends("sample", SAMPLE)
