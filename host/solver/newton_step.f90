@@ -38,12 +38,15 @@ module newton_step
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of an unknown: old, predicted, corrected, and their
                                                !< difference.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
+   integer, parameter :: MOST_SEARCHES = 12           !< Passes that look for the balance along a correction.
+   real(wp), parameter :: LEFT = 0.5_wp               !< Share of the work at its begin that ends the search.
 
    !> The iterate of a step under way.
    type :: iterate_t
       real(wp), allocatable :: rhs(:), dx(:)   !< Residual with minus sign [kN, m3/s], correction [m, kPa]. (unknowns)
       real(wp), allocatable :: touched(:)      !< Forces of contacts before, where steps are measured by their change.
       real(wp) :: norm_0 = -1.0_wp             !< Norm of the first residual, or of the second where it is larger.
+      real(wp) :: work = 0.0_wp                !< Work of the residual along the correction, at its begin [kN m].
       real(wp) :: begun = 0.0_wp               !< Norm that a reduction is a share of.
       real(wp) :: rounded(FIELDS) = 0.0_wp     !< Change of the balances by the rounding of the unknowns [kN, m3/s].
       real(wp) :: t0 = 0.0_wp                  !< Wall clock when the present part of the work began [s].
@@ -76,6 +79,9 @@ contains
                call drop_guess(solution, at)
                cycle
             end if
+            call search_balance(scheme, solution, at, outcome)
+            log%outcome = outcome
+            if (outcome /= CONVERGED) return
             call note_equations(solution, at)
             if (log%iterations > 0) then
                call judge_iterate(solution, at)
@@ -332,11 +338,69 @@ contains
       solution%log%iterations = solution%log%iterations + 1
       associate (old => solution%state, new => solution%next, log => solution%log)
          log%before = log%changed
+         at%work = work_along(solution, at)
          call add_correction(solution%dofs, at%dx, new%x, log%correction, log%changed)
          call advance_rates(solution%scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       end associate
       at%with_slopes = .false.
    end subroutine correct
+
+   !> Looks for balance along a correction that went too far: where its residual points back with more work than it had
+   !> at the begin, the next correction would bring the iterate back to where it was. Regula falsi by the Illinois
+   !> rule. outcome: as of make_equations. docs/theory/host.md section 5.2.
+   subroutine search_balance(scheme, solution, at, outcome)
+      type(scheme_t), intent(in) :: scheme
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+      integer, intent(out) :: outcome
+      real(wp) :: low, high, place, before, work_low, work_high, work, share
+      real(wp) :: largest(FIELDS)
+      integer :: i, side
+
+      outcome = CONVERGED
+      ! The first correction brings prescribed unknowns to their values.
+      if (solution%log%iterations < 2 .or. .not. at%work > 0.0_wp) return
+      work = work_along(solution, at)
+      if (work > -at%work) return
+      low = 0.0_wp
+      high = 1.0_wp
+      work_low = at%work
+      work_high = work
+      place = 1.0_wp
+      side = 0
+      do i = 1, MOST_SEARCHES
+         before = place
+         place = low + (high - low)*work_low/(work_low - work_high)
+         call add_correction(solution%dofs, (place - before)*at%dx, solution%next%x, share, largest)
+         call advance_rates(scheme, solution%state%x, solution%state%v, solution%state%a, solution%next%x, &
+                            solution%next%v, solution%next%a)
+         call make_equations(scheme, solution, at, outcome)
+         if (outcome /= CONVERGED) return
+         work = work_along(solution, at)
+         if (abs(work) <= LEFT*at%work) exit
+         if (work > 0.0_wp) then
+            low = place
+            work_low = work
+            if (side == 1) work_high = work_high/2
+            side = 1
+         else
+            high = place
+            work_high = work
+            if (side == -1) work_low = work_low/2
+            side = -1
+         end if
+      end do
+      solution%log%correction = place*solution%log%correction
+      solution%log%changed = place*solution%log%changed
+   end subroutine search_balance
+
+   !> Finds the work of the residual of the displacements along a correction [kN m].
+   pure real(wp) function work_along(solution, at) result(work)
+      type(solution_t), intent(in) :: solution
+      type(iterate_t), intent(in) :: at
+
+      work = sum(at%dx*at%rhs, mask=solution%dofs%field <= DISPLACEMENTS .and. .not. solution%constraint%fixed)
+   end function work_along
 
    !> Names the outcome of a step whose equations were not solved.
    pure integer function outcome_of(status)
