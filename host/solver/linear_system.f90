@@ -34,7 +34,6 @@ module linear_system
       logical :: factored = .false.           !< There are factors worth trying.
       logical, allocatable :: fixed(:), air(:)   !< Unknowns and air pressures that were fixed when the factors were
                                                  !< made.
-      logical :: indefinite = .false.         !< The last solution found its matrix so, see factorise.
       integer :: active = 0                   !< Nodes in contact when the factors were made.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp) :: rounding(FIELDS) = 0.0_wp   !< Least scale of the present step, see convergence.
@@ -46,8 +45,7 @@ module linear_system
 contains
    !> Solves to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
    !> nothing has been fixed, released or come into contact, otherwise by new ones. docs/theory/host.md section 6.
-   !> status: SOLVED; SINGULAR or FAILED as of factorise; NOT_FINITE as of solve_by_factors. system%indefinite is known
-   !> only of a matrix that was factorised.
+   !> status: SOLVED; SINGULAR or FAILED as of factorise; NOT_FINITE as of solve_by_factors.
    subroutine solve_step(dofs, pattern, constraint, assembly, tolerance, rhs, system, dx, status)
       type(dofs_t), intent(in) :: dofs
       type(pattern_t), intent(in) :: pattern
@@ -72,7 +70,6 @@ contains
          if (is_body(constraint, i)) weight(i) = 1/max(body_scale(constraint, assembly, system%largest, i), LEAST_SCALE)
       end do
       active = 0
-      system%indefinite = .false.
       if (allocated(system%contacts)) active = system%contacts%active
       if (system%factored) system%factored = system%reuse .and. active == system%active &
          .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
@@ -91,7 +88,6 @@ contains
       call add_elapsed(system%seconds(T_FACTORISATION), t0)
       system%factored = status == SOLVED
       if (status /= SOLVED) return
-      system%indefinite = system%sparse%indefinite
       system%fixed = constraint%fixed
       system%air = constraint%air
       system%active = active

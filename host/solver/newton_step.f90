@@ -38,8 +38,9 @@ module newton_step
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of an unknown: old, predicted, corrected, and their
                                                !< difference.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
-   integer, parameter :: MOST_SEARCHES = 12           !< Passes that look for the balance along a correction.
-   real(wp), parameter :: LEFT = 0.5_wp               !< Share of the work at its begin that ends the search.
+   integer, parameter :: MOST_SEARCHES = 12           !< Passes that look for balance along a correction: as
+                                                      !< many as a step has iterations.
+   real(wp), parameter :: LEFT = 0.1_wp               !< Share of the work at its begin that ends the search [-].
 
    !> The iterate of a step under way.
    type :: iterate_t
@@ -103,7 +104,10 @@ contains
             if (all(s%newton%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
             call solve_step(s%dofs, s%pattern, s%constraint, s%assembly, linear_tolerance(s%newton), at%rhs, system, &
                             at%dx, status)
-            if (needs_stiffness(status, system, s%assembly%fallback)) then
+            if (status == SINGULAR .and. s%assembly%fallback < SOFT_POINTS) then
+               ! docs/theory/host.md section 5.3.
+               s%assembly%fallback = s%assembly%fallback + 1
+               system%factored = .false.
                at%with_slopes = .true.
                at%t0 = clock()
                cycle
@@ -345,9 +349,10 @@ contains
       at%with_slopes = .false.
    end subroutine correct
 
-   !> Looks for balance along a correction that went too far: where its residual points back with more work than it had
-   !> at the begin, the next correction would bring the iterate back to where it was. Regula falsi by the Illinois
-   !> rule. outcome: as of make_equations. docs/theory/host.md section 5.2.
+   !> Looks for balance along a correction that went too far, by regula falsi (Illinois rule): the residual behind it
+   !> points back, with more work than it had at the begin, and the next correction might bring the iterate back to
+   !> where it was. Only where displacements are what has the largest error. outcome: as of make_equations.
+   !> docs/theory/host.md section 5.2.
    subroutine search_balance(scheme, solution, at, outcome)
       type(scheme_t), intent(in) :: scheme
       type(solution_t), intent(inout) :: solution
@@ -362,6 +367,10 @@ contains
       if (solution%log%iterations < 2 .or. .not. at%work > 0.0_wp) return
       work = work_along(solution, at)
       if (work > -at%work) return
+      call measure(solution%dofs, solution%constraint, solution%assembly, at%rhs, solution%system%rounding, &
+                   solution%system%largest, solution%log)
+      if (solution%log%worst_field > DISPLACEMENTS .or. &
+          solution%log%error(solution%log%worst_field) < solution%newton%tolerance) return
       low = 0.0_wp
       high = 1.0_wp
       work_low = at%work
@@ -410,21 +419,6 @@ contains
       if (status == SINGULAR) outcome_of = BODY_FREE
       if (status == NOT_FINITE) outcome_of = EQUATIONS_LOST
    end function outcome_of
-
-   !> Whether the matrix is to be made once more, with a stiffness for points that have none: for the open ones where it
-   !> is singular or indefinite, for all where it stays singular; `fallback` is then of the next level.
-   !> docs/theory/host.md section 5.3.
-   logical function needs_stiffness(status, system, fallback) result(needs)
-      integer, intent(in) :: status   !< Outcome of solve_step.
-      type(system_t), intent(inout) :: system
-      integer, intent(inout) :: fallback
-
-      needs = (status == SINGULAR .and. fallback < SOFT_POINTS) .or. &
-              (system%indefinite .and. fallback == NO_FALLBACK)
-      if (.not. needs) return
-      fallback = fallback + 1
-      system%factored = .false.
-   end function needs_stiffness
 
    !> Sets what the passes of a step over the elements are asked for.
    pure subroutine begin_passes(scheme, control, solution)
