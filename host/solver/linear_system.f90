@@ -22,8 +22,7 @@ module linear_system
 contains
    !> Solves to a tolerance, a small share of Newton's: by the factors of an earlier matrix as long as these serve and
    !> nothing has been fixed, released or come into contact, otherwise by new ones. docs/theory/host.md section 6.
-   !> status: SOLVED; SINGULAR or FAILED as of factorise; NOT_FINITE as of solve_by_factors. system%indefinite is known
-   !> only of a matrix that was factorised.
+   !> status: SOLVED; SINGULAR or FAILED as of factorise; NOT_FINITE as of solve_by_factors.
    subroutine solve_step(s, tolerance, rhs, dx, status)
       class(solution_t), intent(inout) :: s
       real(wp), intent(in) :: tolerance   !< Tolerance of the errors of the fields [-]; 0: what rounding leaves.
@@ -44,7 +43,6 @@ contains
          do i = 1, s%dofs%n
             if (is_body(constraint, i)) weight(i) = 1/max(body_scale(s, system%largest, i), LEAST_SCALE)
          end do
-         system%indefinite = .false.
          if (system%factored) system%factored = system%reuse .and. active_nodes(s) == system%active &
             .and. all(constraint%fixed .eqv. system%fixed) .and. all(constraint%air .eqv. system%air)
          if (system%factored) then
@@ -75,7 +73,6 @@ contains
          call add_elapsed(system%seconds(T_FACTORISATION), t0)
          system%factored = status == SOLVED
          if (status /= SOLVED) return
-         system%indefinite = system%sparse%indefinite
          system%fixed = s%constraint%fixed
          system%air = s%constraint%air
          system%active = active_nodes(s)

@@ -37,12 +37,16 @@ module newton_step
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of an unknown: old, predicted, corrected, and their
                                                !< difference.
    real(wp), parameter :: HOPELESS = 1.0e10_wp        !< Error beyond which no further iteration helps.
+   integer, parameter :: MOST_SEARCHES = 12           !< Passes that look for balance along a correction: as many as a
+                                                      !< step has iterations.
+   real(wp), parameter :: LEFT = 0.1_wp               !< Share of the work at its begin that ends the search [-].
 
    !> The iterate of a step under way.
    type :: iterate_t
       real(wp), allocatable :: rhs(:), dx(:)   !< Residual with minus sign [kN, m3/s], correction [m, kPa]. (unknowns)
       real(wp), allocatable :: touched(:)      !< Forces of contacts before, where steps are measured by their change.
       real(wp) :: norm_0 = -1.0_wp             !< Norm of the first residual, or of the second where it is larger.
+      real(wp) :: work = 0.0_wp                !< Work of the residual along the correction, at its begin [kN m].
       real(wp) :: begun = 0.0_wp               !< Norm that a reduction is a share of.
       real(wp) :: rounded(FIELDS) = 0.0_wp     !< Change of the balances by the rounding of the unknowns [kN, m3/s].
       real(wp) :: t0 = 0.0_wp                  !< Wall clock when the present part of the work began [s].
@@ -72,6 +76,8 @@ contains
                call drop_guess(solution, at)
                cycle
             end if
+            call search_balance(solution, at)
+            if (log%outcome /= CONVERGED) return
             call note_equations(solution, at)
             if (log%iterations > 0) then
                call judge_iterate(solution, at)
@@ -91,7 +97,10 @@ contains
             ! Other measures may ask for more than a linear solution that is exact to a share of the forces.
             if (all(s%newton%measure /= [BY_FORCES, BY_CHANGE])) system%factored = .false.
             call solve_step(s, linear_tolerance(s%newton), at%rhs, at%dx, status)
-            if (needs_stiffness(status, system, s%assembly%fallback)) then
+            if (status == SINGULAR .and. s%assembly%fallback < SOFT_POINTS) then
+               ! docs/theory/host.md section 5.3.
+               s%assembly%fallback = s%assembly%fallback + 1
+               system%factored = .false.
                at%with_slopes = .true.
                at%t0 = clock()
                cycle
@@ -328,11 +337,72 @@ contains
       solution%log%iterations = solution%log%iterations + 1
       associate (old => solution%state, new => solution%next, log => solution%log)
          log%before = log%changed
+         at%work = work_along(solution, at)
          call add_correction(solution%dofs, at%dx, new%x, log%correction, log%changed)
          call advance_rates(solution%scheme, old%x, old%v, old%a, new%x, new%v, new%a)
       end associate
       at%with_slopes = .false.
    end subroutine correct
+
+   !> Looks for balance along a correction that went too far, by regula falsi (Illinois rule): the residual behind it
+   !> points back, with more work than it had at the begin, and the next correction might bring the iterate back to
+   !> where it was. Only where displacements are what has the largest error. log%outcome: as of make_equations.
+   !> docs/theory/host.md section 5.2.
+   subroutine search_balance(solution, at)
+      type(solution_t), intent(inout) :: solution
+      type(iterate_t), intent(inout) :: at
+      real(wp) :: begun, low, high, place, before, work_low, work_high, work, share, largest(FIELDS)
+      integer :: i, side
+
+      begun = at%work
+      at%work = 0.0_wp   ! a correction is searched once
+      ! The first correction brings prescribed unknowns to their values.
+      if (solution%log%iterations < 2 .or. .not. begun > 0.0_wp) return
+      work = work_along(solution, at)
+      if (work > -begun) return
+      associate (old => solution%state, new => solution%next, log => solution%log)
+         call measure(solution, at%rhs)
+         if (log%worst_field > DISPLACEMENTS .or. log%error(log%worst_field) < solution%newton%tolerance) return
+         low = 0.0_wp
+         high = 1.0_wp
+         work_low = begun
+         work_high = work
+         place = high
+         side = 0
+         do i = 1, MOST_SEARCHES
+            before = place
+            place = low + (high - low)*work_low/(work_low - work_high)
+            call add_correction(solution%dofs, (place - before)*at%dx, new%x, share, largest)
+            call advance_rates(solution%scheme, old%x, old%v, old%a, new%x, new%v, new%a)
+            call make_equations(solution, at)
+            if (log%outcome /= CONVERGED) return
+            work = work_along(solution, at)
+            if (abs(work) <= LEFT*begun) exit
+            ! An end that stays counts half as much.
+            if (work > 0.0_wp) then
+               low = place
+               work_low = work
+               if (side > 0) work_high = work_high/2
+               side = 1
+            else
+               high = place
+               work_high = work
+               if (side < 0) work_low = work_low/2
+               side = -1
+            end if
+         end do
+         log%correction = place*log%correction
+         log%changed = place*log%changed
+      end associate
+   end subroutine search_balance
+
+   !> Finds the work of the residual of the displacements along a correction [kN m].
+   pure real(wp) function work_along(solution, at) result(work)
+      type(solution_t), intent(in) :: solution
+      type(iterate_t), intent(in) :: at
+
+      work = sum(at%dx*at%rhs, mask=solution%dofs%field <= DISPLACEMENTS .and. .not. solution%constraint%fixed)
+   end function work_along
 
    !> Names the outcome of a step whose equations were not solved.
    pure integer function outcome_of(status)
@@ -342,21 +412,6 @@ contains
       if (status == SINGULAR) outcome_of = BODY_FREE
       if (status == NOT_FINITE) outcome_of = EQUATIONS_LOST
    end function outcome_of
-
-   !> Whether the matrix is to be made once more, with a stiffness for points that have none: for the open ones where it
-   !> is singular or indefinite, for all where it stays singular; `fallback` is then of the next level.
-   !> docs/theory/host.md section 5.3.
-   logical function needs_stiffness(status, system, fallback) result(needs)
-      integer, intent(in) :: status   !< Outcome of solve_step.
-      type(system_t), intent(inout) :: system
-      integer, intent(inout) :: fallback
-
-      needs = (status == SINGULAR .and. fallback < SOFT_POINTS) .or. &
-              (system%indefinite .and. fallback == NO_FALLBACK)
-      if (.not. needs) return
-      fallback = fallback + 1
-      system%factored = .false.
-   end function needs_stiffness
 
    !> Sets what the passes of a step over the elements are asked for.
    pure subroutine begin_passes(control, solution)

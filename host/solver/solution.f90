@@ -88,7 +88,6 @@ module solution
       real(wp), allocatable :: made_of(:)     !< (entries) Values of the matrix that the factors belong to.
       logical, allocatable :: fixed(:), air(:)   !< Unknowns and air pressures that were fixed when the factors were
                                                  !< made.
-      logical :: indefinite = .false.         !< The last solution found its matrix so, see factorise.
       integer :: active = 0                   !< Nodes in contact when the factors were made.
       real(wp) :: largest(FIELDS) = 0.0_wp    !< Largest scale of every field so far.
       real(wp) :: rounding(FIELDS) = 0.0_wp   !< Least scale of the present step, see convergence.

@@ -34,7 +34,6 @@ module sparse_factors
       type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr
       integer :: n_numeric = 0, n_solve = 0
       real(wp) :: entries = 0.0_wp                        !< In the factors.
-      logical :: indefinite = .false.                     !< The determinant is negative: see factorise.
    end type sparse_t
 
    interface
@@ -74,13 +73,6 @@ module sparse_factors
          real(c_double), intent(out) :: info(*)
       end function umfpack_di_solve
 
-      integer(c_int) function umfpack_di_get_determinant(mantissa, exponent, numeric, info) bind(c)
-         import :: c_int, c_double, c_ptr
-         real(c_double), intent(out) :: mantissa, exponent
-         type(c_ptr), value :: numeric
-         real(c_double), intent(inout) :: info(*)
-      end function umfpack_di_get_determinant
-
       subroutine umfpack_di_free_symbolic(symbolic) bind(c)
          import :: c_ptr
          type(c_ptr), intent(inout) :: symbolic
@@ -112,13 +104,11 @@ contains
 
    !> Factorises the matrix with these values; status is SOLVED, SINGULAR or FAILED. SINGULAR: a pivot is 0 or the
    !> smallest is below 1e-13 of the largest (docs/theory/host.md section 6); FAILED: any other refusal of UMFPACK, as
-   !> by lack of memory. An odd number of negative real eigenvalues makes sparse%indefinite true; a stable soil has
-   !> none, also with pore pressures (docs/theory/host.md section 5.3). To be called after analyse.
+   !> by lack of memory. To be called after analyse.
    subroutine factorise(sparse, values, status)
       type(sparse_t), intent(inout) :: sparse
       real(wp), intent(in) :: values(:)   !< (entries)
       integer, intent(out) :: status
-      real(c_double) :: mantissa, exponent
       integer(c_int) :: code
 
       if (c_associated(sparse%numeric)) call umfpack_di_free_numeric(sparse%numeric)
@@ -131,11 +121,6 @@ contains
          status = FAILED
       else if (sparse%info(INFO_RCOND) < RCOND_SINGULAR) then
          status = SINGULAR
-      end if
-      sparse%indefinite = .false.
-      if (status == SOLVED) then
-         code = umfpack_di_get_determinant(mantissa, exponent, sparse%numeric, sparse%info)
-         sparse%indefinite = code == 0 .and. mantissa < 0.0_c_double
       end if
       sparse%entries = sparse%info(INFO_LNZ) + sparse%info(INFO_UNZ)
       sparse%n_numeric = sparse%n_numeric + 1

@@ -1,7 +1,9 @@
 ! SPDX-License-Identifier: MIT
-!> A law without stiffness, for the tests of what the host does about it: elastic as long as an increment is short; one
-!> that is longer meets nine tenths of the stress and a tangent of zero. It may refuse batches of many points, and no
-!> point of a shorter one.
+!> Laws that are hard to solve for, for the tests of what the host does about it.
+!>
+!> One has no stiffness: it is elastic as long as an increment is short; one that is longer meets nine tenths of the
+!> stress and a tangent of zero. It may refuse batches of many points, and no point of a shorter one. The other one has a
+!> kink: behind it the stress grows with the root of the strain.
 module soft_laws
    use kinds, only: wp
    use material_elastic, only: elastic_t, isotropic
@@ -9,9 +11,12 @@ module soft_laws
    use model_types, only: model_t
    implicit none (type, external)
    private
-   public :: soft_t, soften
+   public :: soft_t, soften, bend, BEND_AT, BEHIND_IT
 
    real(wp), parameter :: LEFT = 0.9_wp   !< Share of the elastic change of stress in a long increment [-].
+
+   real(wp), parameter :: BEND_AT = 5.0e-4_wp    !< Compression along z at the kink [-].
+   real(wp), parameter :: BEHIND_IT = 1.0e3_wp   !< Stress behind the kink over the root of the strain from there [kPa].
 
    type, extends(elastic_t) :: soft_t
       real(wp) :: limit = 0.0_wp        !< Largest strain of an increment that meets stiffness [-].
@@ -21,6 +26,12 @@ module soft_laws
       procedure :: update => soft_update
       procedure :: elastic_tangent => soft_elastic_tangent
    end type soft_t
+
+   !> Elastic without Poisson's ratio up to the kink, in one increment from rest that strains along z alone.
+   type, extends(elastic_t) :: bent_t
+   contains
+      procedure :: update => bent_update
+   end type bent_t
 contains
    !> Makes the elastic law of a region a soft one.
    subroutine soften(model, region, limit, knows_elastic, most_points)
@@ -45,6 +56,46 @@ contains
          allocate (one%law, source=soft)
       end associate
    end subroutine soften
+
+   !> Gives the elastic law of a region a kink.
+   subroutine bend(model, region)
+      type(model_t), intent(inout) :: model
+      integer, intent(in) :: region
+      type(bent_t) :: bent
+
+      associate (one => model%domain%regions(region))
+         select type (law => one%law)
+         type is (elastic_t)
+            bent%elastic_t = law
+         class default
+            error stop 'only an elastic law can have a kink'
+         end select
+         deallocate (one%law)
+         allocate (one%law, source=bent)
+      end associate
+   end subroutine bend
+
+   subroutine bent_update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                          report)
+      class(bent_t), intent(in) :: self
+      integer, intent(in) :: n
+      real(wp), intent(in), contiguous :: stress(:, :), state(:, :), strain(:, :), suction(:), d_suction(:)
+      logical, intent(in) :: with_tangent
+      type(response_t), intent(inout) :: response
+      real(wp), intent(inout), contiguous :: new_state(:, :)
+      type(batch_report_t), intent(out) :: report
+      real(wp) :: past
+      integer :: g
+
+      call self%elastic_t%update(n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
+                                report)
+      do g = 1, n
+         past = -strain(2, g) - BEND_AT
+         if (past <= 0.0_wp) cycle
+         response%stress(2, g) = -(self%young*BEND_AT + BEHIND_IT*sqrt(past))
+         if (with_tangent) response%dsig_deps(2, 2, g) = BEHIND_IT/(2*sqrt(past))
+      end do
+   end subroutine bent_update
 
    subroutine soft_update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
                           report)
