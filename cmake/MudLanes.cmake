@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # mud_add_lanes(SOURCES CORE)
 # Sources of increments side by side (MUD_LANES of mud.h), for x86-64 and GNU compilers; none elsewhere, nor on Windows,
-# where GCC aligns the stack to 16 bytes and vectors on it need 32 or 64. CORE: the files of the core in their order.
+# where GCC aligns the stack to 16 bytes and vectors on it need 32 or 64, nor by make: for makefiles CMake looks for
+# modules before the preprocessor has renamed them. CORE: the files of the core in their order.
 #
 # For each of two kinds of processor they are the core once more, and what a rate needs of it again, compiled so that
 # loops over points become vectors. The preprocessor gives the modules of each copy names of their own, so that nothing
@@ -11,6 +12,10 @@ function(mud_add_lanes sources core)
    if(NOT (CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64" AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND NOT WIN32 AND
            CMAKE_Fortran_COMPILER_ID STREQUAL "GNU" AND CMAKE_C_COMPILER_ID STREQUAL "GNU" AND
            CMAKE_C_COMPILER_VERSION VERSION_GREATER_EQUAL 12))
+      return()
+   endif()
+   if(CMAKE_GENERATOR MATCHES "Makefiles")
+      message(STATUS "${CMAKE_GENERATOR}: without increments side by side (MUD_LANES); Ninja builds them")
       return()
    endif()
    set(levels v3 v4)

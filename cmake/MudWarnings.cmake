@@ -12,7 +12,7 @@ function(mud_set_warnings target)
       # changes other languages alone). By relative names libraries and programs do not hold where they were built.
       if(UNIX)
          set_property(TARGET ${target} PROPERTY
-            RULE_LAUNCH_COMPILE "sh ${PROJECT_SOURCE_DIR}/cmake/relative_names.sh ${PROJECT_SOURCE_DIR}")
+            RULE_LAUNCH_COMPILE "sh \"${PROJECT_SOURCE_DIR}/cmake/relative_names.sh\" \"${PROJECT_SOURCE_DIR}\"")
       endif()
    endif()
    # Without much optimisation gfortran 12 takes allocations for a use of undefined bounds.

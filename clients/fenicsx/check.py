@@ -230,7 +230,8 @@ def strip():
 
 
 def indentation():
-    scene = here/"scenes/indentation.nml"
+    # By its own tolerance, 1e-4, ranks differ by up to that where rounding decides what a point does in an iteration.
+    scene = text(here/"scenes/indentation.nml", ("dt = 4.0e-4 tolerance = 1e-4", "dt = 4.0e-4 tolerance = 1e-8"))
     one = solid("indentation", scene, "--no-fields")
     near("indentation, sector of 5 degrees", one, host("indentation_host", scene),
          ("centre.u_z", "rim.u_z", "below.u_z"), HOST)

@@ -172,11 +172,13 @@ def check(host, version, run, finer):
             results[name] = "no convergence"
             clients.verdict(False, f"reference case {name}", str(reason))
             continue
-        results[name] = {quantity: [float(f"{d[quantity]/told['tolerance']:.2g}") for d in (off, finer_off) if d]
-                         for quantity, told in case.quantities.items()}
-        for quantity, shares in results[name].items():
+        results[name] = {}
+        for quantity, told in case.quantities.items():
+            shares = [d[quantity]/told["tolerance"] for d in (off, finer_off) if d]
+            results[name][quantity] = rounded = [float(f"{share:.2g}") for share in shares]
             clients.verdict(shares[0] <= 1 or len(shares) == 2 and shares[1] <= max(1.0, 0.6*shares[0]),
-                            f"reference case {name}, {quantity}", " and, finer, ".join(map(str, shares)) + " of its tolerance")
+                            f"reference case {name}, {quantity}",
+                            " and, finer, ".join(map(str, rounded)) + " of its tolerance")
     kept = clients.root / "clients" / host / "references.json"
     kept.write_text(json.dumps({"version": version, "cases": results}, indent=1) + "\n", encoding="utf-8")
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Controls of mud_triax: what is held is held, what leads arrives, cycles turn where they should, stops stop."""
 import re
+import shlex
 import subprocess
 import sys
 
@@ -347,8 +348,9 @@ def test_hdf5_is_made_of_the_csv_file_by_the_line_of_the_readme():
     rows, _ = run(stage)
     page = (root / "drivers/README.md").read_text(encoding="utf-8").split("\n## Columns\n")[1]
     line = re.search(r"^PYTHONPATH=.*h5py.*$", page, re.MULTILINE)[0]
-    done = subprocess.run(line.replace("build/venv/bin/python3", sys.executable).replace("=common", f"={root}/common"),
-                          shell=True, cwd=work, capture_output=True, text=True)
+    line = line.replace("build/venv/bin/python3", shlex.quote(sys.executable))
+    done = subprocess.run(line.replace("=common", f"={shlex.quote(str(root))}/common"), shell=True, cwd=work,
+                          capture_output=True, text=True)
     check("the line runs", done.returncode == 0, done.stderr)
     with h5py.File(work / "case.h5") as file:
         check("every column is there to the last digit", set(file) == set(rows[0]) and len(file["q"]) == len(rows)

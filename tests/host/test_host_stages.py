@@ -117,6 +117,21 @@ def test_a_body_needs_a_support_while_its_ground_is_there():
               ("without effective stress" in done.stderr) == bare, (done.returncode, done.stderr))
 
 
+def test_weights_come_and_go_evenly_over_a_stage():
+    # Three layers join with a stage and leave with the next, in two steps each: elastic, so that half the weight
+    # settles half as far.
+    rows = run("evenly", scene("embankment", *((f"stages = {names} /", "stages = 'one' /") for names in (
+        "'one', 'two', 'three'", "'two', 'three'", "'three'"))))
+    if rows is None:
+        return
+    full = rows["z2.u_z"][rows["time"] == 2][0]
+    # 3 m of (2.7*10)/1.8 kN/m3 on 2 m with a constrained modulus of 1.346e7 kPa.
+    check("their weight", abs(full/(-45*2/1.346e7) - 1) < 1e-3, full)
+    for time, share in ((1.5, 0.5), (2.5, 0.5), (3, 0)):
+        now = rows["z2.u_z"][rows["time"] == time][0]
+        check(f"share of the weight at {time} s", abs(now/full - share) < 1e-4, (now, full))
+
+
 SUCTIONS = """&scene name = 'wet' geometry = 'plane_strain' fields = 'u-p_w-p_c' /
 &mesh r = 0, 1 r_cells = 1 z = 0, 1, 2 z_cells = 2, 2 /
 &elastic name = 's' young = 1e8 poisson = 0 /

@@ -99,6 +99,20 @@ def test_held_soil_keeps_its_share_of_the_strength():
         check(f"held, {row['time']} s: p'", abs(p/100 - 1) < 1e-10, p)
 
 
+def test_each_material_follows_its_own_history():
+    # Beside the held sand another one, whose M_c falls to a half; the ground moves nowhere.
+    text = HELD.replace("r = 0, 1 r_cells = 1", "r = 0, 1, 2 r_cells = 1, 1").replace(
+        "&region material = 'sand' /", "&region group = 'block_1_1' material = 'sand' /\n"
+        "&mud name = 'other' e_0 = 0.95 /\n&region group = 'block_2_1' material = 'other' /\n"
+        "&strength material = 'other' parameter = 'M_c' history = 'half' /\n"
+        "&history name = 'half' times = 0, 1 values = 1, 0.5 /\n&fix group = 'all' field = 'u_r' /\n"
+        "&point name = 'far' r = 2 z = 1 /")
+    rows = tables.numbers(work / "pair/histories.csv") if ran("pair", text) else []
+    for name, share in (("top", 0.2), ("far", 0.5)):
+        q = rows and rows[-1][f"{name}.s_rr"] - rows[-1][f"{name}.s_zz"]
+        check(f"{name}: q is its share", q and abs(q/(75*share) - 1) < 1e-10, (q, 75*share))
+
+
 def test_shearing_at_the_critical_state_follows_the_strength():
     # Sheared far, then on while M_c falls to 0.6 of itself: q/(M_c f p') is what it was.
     text = SAMPLE.replace("times = 0, 1 values = 1, 0.2", "times = 0, 1, 1.2 values = 1, 1, 0.6").replace(

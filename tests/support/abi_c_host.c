@@ -235,7 +235,7 @@ int abi_null_pointers_of_the_rest(void)
           mud_init(material, stress, 0.0, 0.0, 0.0, statev, nstatev, NULL, 0) == MUD_OK &&
           mud_update_points(NULL, 1, &(mud_points){0}, NULL) == MUD_NULL_ARGUMENT &&
           mud_init_points(material, 1, NULL, NULL) == MUD_NULL_ARGUMENT &&
-          mud_saturation_points(material, 1, &(mud_points){.nstatev = nstatev}, NULL) == MUD_NULL_ARGUMENT &&
+          mud_saturation_points(material, 1, &(mud_points){.n = 1, .nstatev = nstatev}, NULL) == MUD_NULL_ARGUMENT &&
           mud_index(MUD_PROPS, NULL) == -1 && mud_bounds(MUD_PROPS, 0, NULL, NULL, NULL) == MUD_OK &&
           mud_version(NULL, 10) == MUD_OK && mud_text(MUD_PROPS, 0, MUD_NAME, NULL, 10) == MUD_OK &&
           mud_status_text(0, NULL, 10) == MUD_OK;

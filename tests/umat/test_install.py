@@ -79,9 +79,9 @@ def find_package(folder, prefix, *arguments, language="NONE", body=""):
     return done.returncode == 0, re.sub(r"\s+", " ", done.stdout + done.stderr)
 
 
-def common(prefix):
+def common(prefix, generator=cache["CMAKE_GENERATOR"]):
     """Same compilers and generator as the build under test."""
-    return [f"-DCMAKE_PREFIX_PATH={prefix}", "-G", cache["CMAKE_GENERATOR"],
+    return [f"-DCMAKE_PREFIX_PATH={prefix}", "-G", generator,
             f"-DCMAKE_C_COMPILER={cache['CMAKE_C_COMPILER']}",
             f"-DCMAKE_Fortran_COMPILER={cache['CMAKE_Fortran_COMPILER']}",
             "-DCMAKE_BUILD_TYPE=Release", "--no-warn-unused-cli"]
@@ -162,6 +162,19 @@ def files_that_are_not_built_are_named_before_anything_is_installed(folder, pref
     told = re.sub(r"\s+", " ", done.stderr)
     expect(done.returncode and "libmud.so" in told and "mud_triax" in told and "cmake --build" in told, told)
     expect(not (folder / "nowhere").exists(), "something was installed")
+
+
+@check(OPTIMISED)
+def make_builds_the_library_and_folders_may_have_a_blank(folder, prefix):
+    """`cmake -S . -B build` takes makefiles where nobody names a generator, and pip does where there is no ninja."""
+    tree, out = folder / "a tree", folder / "by make"
+    tree.symlink_to(root)
+    run("cmake", "-S", tree, "-B", out, *common(prefix, "Unix Makefiles"), "-DMUD_BUILD_TESTS=OFF",
+        "-DMUD_BUILD_DRIVERS=OFF", "-DMUD_BUILD_HOST=OFF", "-DMUD_BUILD_STATIC=OFF", "-DCMAKE_BUILD_TYPE=Debug",
+        "-DCMAKE_Fortran_FLAGS_DEBUG=-O0", "-DMUD_WERROR=ON", f"-DMUD_PYTHON={sys.executable}")
+    run("cmake", "--build", out, "--target", "mud_shared", "-j", "2")
+    mud = ctypes.CDLL(str(out / "umat/libmud.so"))
+    expect(str(mud.mud_abi_version()) == abi, mud.mud_abi_version())
 
 
 @check(OPTIMISED)

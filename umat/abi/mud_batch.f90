@@ -117,8 +117,8 @@ contains
          if (lanes) given%tangent = given%tangent - SIDE_BY_SIDE
          lanes = lanes .and. task == UPDATE .and. .not. is_present(given%tangent)
          status = fault_of(task, given)
+         if (status%code == MUD_OK .and. given%n > 0) call find_arrays(task, given, int(n_materials), arrays, status)
       end if
-      if (status%code == MUD_OK) call find_arrays(task, given, int(n_materials), arrays, status)
       run = status%code
       if (status%code /= MUD_OK) return
 
@@ -163,7 +163,8 @@ contains
       place = total
    end function run
 
-   !> Status of the counts and the kind of tangent of a call, and of an array that the task needs and that is missing.
+   !> Status of the counts and the kind of tangent of a call, and of an array that the task needs and that is missing;
+   !> no points need none.
    pure function fault_of(task, given) result(status)
       integer, intent(in) :: task
       type(points_t), intent(in) :: given
@@ -180,7 +181,7 @@ contains
       case default
          complete = c_associated(given%statev0)
       end select
-      if (.not. complete) then
+      if (given%n /= 0 .and. .not. complete) then
          status = fail(MUD_NULL_ARGUMENT, ON_ARGUMENT)
       else if (given%n_statev < NSTATV_BASE) then
          status = fail(MUD_BAD_NSTATV, ON_STATEV)
@@ -203,8 +204,7 @@ contains
       m = given%n_statev
       if (c_associated(given%list)) then
          call c_f_pointer(given%list, arrays%list, [given%n])
-         n = 0
-         if (given%n > 0) n = maxval(arrays%list) + 1
+         n = maxval(arrays%list) + 1
          i = min(0, minval(arrays%list))
          if (i < 0) status = fail(MUD_BAD_OPTION, ON_ARGUMENT, 0, real(i, wp), 0.0_wp, huge(1.0_wp))
          if (status%code /= MUD_OK) return

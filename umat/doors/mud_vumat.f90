@@ -167,7 +167,8 @@ contains
       if (associated(points%field1)) suction = points%field1(k, 1)
    end subroutine read_suction
 
-   !> Stress, state and internal energy per mass, which grows by the mean stress times the strain.
+   !> Stress, state and internal energy per mass, which grows by the mean stress times the strain. Numbers of the state
+   !> behind those of the point are the host's, who expects all of them: they stay.
    subroutine write_point(points, k, strain, stress, state)
       type(block_t), intent(in) :: points
       integer, intent(in) :: k
@@ -176,6 +177,7 @@ contains
 
       before = read_six(points%stress0(k, :))
       host = stress(ORDER)
+      points%state1(k, :) = points%state0(k, :)
       points%state1(k, 1:size(state)) = state
       if (associated(points%energy0) .and. associated(points%energy1)) points%energy1(k) = points%energy0(k)
       if (associated(points%energy0) .and. associated(points%energy1) .and. associated(points%density)) then

@@ -159,7 +159,7 @@ int mud_update(const double *material, const double *stress0, const double *stat
 /* --- many points --------------------------------------------------------------------------------------- */
 /* The arrays of a mesh, those of one point after those of another. Zero the structure, then set what a call needs. */
 typedef struct mud_points {
-   int n;                   /* how many points a call reads and writes, 0 or more                      */
+   int n;                   /* how many points a call reads and writes; 0: no array is needed           */
    int nstatev;             /* numbers of a point in statev0 and statev1                               */
    int tangent;             /* as in mud_update                                                        */
    int threads;             /* 0: as many as OpenMP would take; at most 1024; 1 in a fork of a process that used more */
