@@ -2,28 +2,21 @@
 !> Archive of a run: every part of a run names what it keeps in one procedure, which writes the values to a file or
 !> restores them from it. The part's procedure does not ask which: `call archive%exchange('dt', dt, 's', 'next step')`.
 !> An entry that is missing, or is not what the part expects, makes the archive damaged; the values stay as they are.
-!> An archive is an HDF5 file.
+!> What kind of file it is, its extension knows.
 module archive
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use, intrinsic :: iso_fortran_env, only: int64
-   use faults, only: fault_t, raise, EXIT_RESTART
-   use hdf5_file, only: h5_t, new_file, write_file, open_file, close_file, put, put_text, get, get_text, extents_of
    use kinds, only: wp
-   use library_tables, only: library_version
    implicit none (type, external)
    private
-   public :: archive_t, create_archive, open_archive, close_archive, CHECKPOINT
+   public :: archive_t
 
-   character(*), parameter :: CHECKPOINT = 'checkpoint.h5'   !< Name of the archive of a run.
-   character(*), parameter :: KIND_OF_FILE = 'checkpoint of mud_host'
-   character(*), parameter :: FORMAT_OF_FILE = '23'   !< Grows with every change of what is stored.
    real(wp), parameter :: LARGEST_WHOLE = 2.0_wp**53   !< Whole numbers are stored as real ones, exact up to here.
 
-   type :: archive_t
+   type, abstract :: archive_t
       logical :: reading = .false.          !< Values are restored, not written.
       logical :: good = .true.              !< Every exchange so far has succeeded.
       character(:), allocatable :: within   !< Stands before the names of a part's values.
-      type(h5_t), private :: file
    contains
       !> One value or list, of the extent that it has, with its unit and meaning; a text has neither. Whole numbers may
       !> have a range.
@@ -32,65 +25,40 @@ module archive
       !> A list that need not be allocated, with its extent.
       generic :: exchange_allocatable => exchange_real_list, exchange_real_table, exchange_whole_list
       procedure :: enter, leave, refuse
+      procedure(move_values_i), deferred :: move_values
+      procedure(move_text_i), deferred :: move_text
+      procedure(find_extents_i), deferred :: find_extents
       procedure, private :: exchange_reals, exchange_whole, exchange_long, exchange_wholes, exchange_flag, exchange_text
       procedure, private :: exchange_real_list, exchange_real_table, exchange_whole_list
    end type archive_t
+
+   abstract interface
+      !> Writes a number, list or table, or restores it where the archive has one of its extent; else the archive is
+      !> damaged.
+      subroutine move_values_i(self, name, values, unit, meaning)
+         import :: archive_t, wp
+         class(archive_t), intent(inout) :: self
+         character(*), intent(in) :: name, unit, meaning
+         real(wp), intent(inout), contiguous :: values(..)
+      end subroutine move_values_i
+
+      !> Writes a text, or restores it; one that the archive does not have is blank.
+      subroutine move_text_i(self, name, text)
+         import :: archive_t
+         class(archive_t), intent(inout) :: self
+         character(*), intent(in) :: name
+         character(*), intent(inout) :: text
+      end subroutine move_text_i
+
+      !> Extents of a list or table of the archive; 0 where it has no such dimension, or is not there.
+      function find_extents_i(self, name) result(extents)
+         import :: archive_t
+         class(archive_t), intent(in) :: self
+         character(*), intent(in) :: name
+         integer :: extents(2)
+      end function find_extents_i
+   end interface
 contains
-   !> Begins an archive that is written; its file gets its name when it is closed.
-   subroutine create_archive(path, archive)
-      character(*), intent(in) :: path
-      type(archive_t), intent(out) :: archive
-
-      archive%within = ''
-      call new_file(archive%file, path, guarded=.true.)
-      call put_text(archive%file, 'kind', KIND_OF_FILE)
-      call put_text(archive%file, 'format', FORMAT_OF_FILE)
-      call put_text(archive%file, 'library', library_version())
-   end subroutine create_archive
-
-   !> Opens an archive to read. Fault EXIT_RESTART, and the file is closed: no such file, a truncated one, one of
-   !> another kind or of another version of program or library.
-   subroutine open_archive(path, archive, fault)
-      character(*), intent(in) :: path
-      type(archive_t), intent(out) :: archive
-      type(fault_t), intent(inout) :: fault
-      character(:), allocatable :: format, theirs, here
-
-      archive%reading = .true.
-      archive%within = ''
-      call open_file(path, archive%file)
-      if (.not. archive%file%good) then
-         call raise(fault, EXIT_RESTART, path//' is missing, no HDF5 file, or truncated; name the '//CHECKPOINT// &
-                    ' of a run.')
-         return
-      end if
-      format = trim(get_text(archive%file, 'format'))
-      theirs = trim(get_text(archive%file, 'library'))
-      here = library_version()
-      if (get_text(archive%file, 'kind') /= KIND_OF_FILE) then
-         call raise(fault, EXIT_RESTART, path//' is an HDF5 file, but no checkpoint of mud_host; name the '// &
-                    CHECKPOINT//' of a run.')
-      else if (format /= FORMAT_OF_FILE .or. theirs /= here) then
-         call raise(fault, EXIT_RESTART, path//' was written by another version: format '//format//', library '// &
-                    theirs//'; this one has format '//FORMAT_OF_FILE//', library '//here//'. Finish the run with '// &
-                    'the program that began it.')
-      end if
-      if (fault%code /= 0) call close_file(archive%file)
-   end subroutine open_archive
-
-   !> Ends an archive. good is false where it is damaged, or cannot be written; an older file of its name then stays.
-   subroutine close_archive(archive, good)
-      type(archive_t), intent(inout) :: archive
-      logical, intent(out) :: good
-
-      good = archive%good
-      if (archive%reading) then
-         call close_file(archive%file)
-      else
-         call write_file(archive%file, good)
-      end if
-   end subroutine close_archive
-
    !> Puts the name of a part before the names that follow, up to `leave`.
    subroutine enter(self, part)
       class(archive_t), intent(inout) :: self
@@ -114,18 +82,13 @@ contains
       self%good = .false.
    end subroutine refuse
 
-   !> Exchanges a number, a list or a table; one that is restored has its extent in the archive, else that is damaged.
+   !> Exchanges a number, a list or a table.
    subroutine exchange_reals(self, name, values, unit, meaning)
       class(archive_t), intent(inout) :: self
       character(*), intent(in) :: name, unit, meaning
       real(wp), intent(inout), contiguous :: values(..)
 
-      if (self%reading) then
-         call get(self%file, self%within//name, values)
-      else
-         call put(self%file, self%within//name, values, unit, meaning)
-      end if
-      self%good = self%good .and. self%file%good
+      call self%move_values(self%within//name, values, unit, meaning)
    end subroutine exchange_reals
 
    !> Exchanges whole numbers. The archive is damaged where one is no whole number or lies outside the range.
@@ -205,11 +168,7 @@ contains
       character(*), intent(in) :: name
       character(*), intent(inout) :: text
 
-      if (self%reading) then
-         text = get_text(self%file, self%within//name)
-      else
-         call put_text(self%file, self%within//name, trim(text))
-      end if
+      call self%move_text(self%within//name, text)
    end subroutine exchange_text
 
    !> Exchanges extents of a list that need not be allocated: those of the part, or those of the file, which must be the
@@ -222,7 +181,7 @@ contains
 
       call self%exchange_wholes(name//'_extent', extents, '-', 'extent of '//name//'; -1: there is none')
       if (.not. self%reading) return
-      found = extents_of(self%file, self%within//name)
+      found = self%find_extents(self%within//name)
       if (all(extents > 0) .and. any(found(:size(extents)) /= extents)) call self%refuse()
       if (any(extents < 0) .and. any(extents /= -1)) call self%refuse()
       if (.not. self%good) extents = -1

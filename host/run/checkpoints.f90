@@ -2,7 +2,8 @@
 !> Checkpoints, the complete state of a run in one file, and a run from one. Every part of a run and every observer
 !> exchanges what it keeps by itself.
 module checkpoints
-   use archive, only: archive_t, create_archive, open_archive, close_archive, CHECKPOINT
+   use archive, only: archive_t
+   use archive_file, only: archive_file_t, archive_kind_t, create_archive, open_archive, close_archive
    use run_state, only: run_t, exchange_run
    use run_observer, only: observers_t
    use wall_clock, only: clock, add_elapsed
@@ -16,6 +17,11 @@ module checkpoints
    private
    public :: keep_run, read_checkpoint
 
+   character(*), parameter :: CHECKPOINT = 'checkpoint.h5'
+   type(archive_kind_t), parameter :: KIND_OF_FILE = archive_kind_t('checkpoint of mud_host', '23', &
+      CHECKPOINT//' of a run', &
+      ' is an HDF5 file, but no checkpoint of mud_host; name the '//CHECKPOINT//' of a run.', &
+      'Finish the run with the program that began it.')
    character(*), parameter :: DAMAGED = ' is damaged: an entry is missing, has another extent or a wrong '// &
                                         'checksum; use an older copy, or start anew.'
 contains
@@ -53,10 +59,10 @@ contains
       type(run_t), intent(inout) :: run   !< Stays as it is; a restart would restore it.
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(archive_t) :: archive
+      type(archive_file_t) :: archive
       logical :: good
 
-      call create_archive(folder//'/'//CHECKPOINT, archive)
+      call create_archive(folder//'/'//CHECKPOINT, KIND_OF_FILE, archive)
       call exchange_scene(folder, run%model, archive, fault)
       call exchange_run(run, archive)
       call observers%exchange(archive)
@@ -73,10 +79,10 @@ contains
       type(run_t), intent(inout) :: run
       type(observers_t), intent(inout) :: observers
       type(fault_t), intent(inout) :: fault
-      type(archive_t) :: archive
+      type(archive_file_t) :: archive
       logical :: good
 
-      call open_archive(path, archive, fault)
+      call open_archive(path, KIND_OF_FILE, archive, fault)
       if (fault%code /= 0) return
       call exchange_scene(path, run%model, archive, fault)
       if (fault%code == 0) call exchange_run(run, archive)
