@@ -11,14 +11,15 @@ module contact_interfaces
    use contact_response, only: nodal_forces_t, new_forces
    use contact_plate, only: gather_on_plate, force_on_plate, new_spring_result, evaluate_springs, lengths_of_nodes
    use plate_motion, only: plate_motion_t, plate_positions
-   use contact_types, only: contact_options_t, contact_status_t, has_friction, CONTACT_OK
+   use contact_types, only: contact_options_t, contact_status_t, contact_message, has_friction, CONTACT_OK
    use degrees_of_freedom, only: dofs_t
    use unknown_fields, only: DISPLACEMENTS
    use sparsity_pattern, only: pattern_t, entry_of
+   use surface_forces, only: surface_forces_t
    implicit none (type, external)
    private
    public :: contacts_t, contact_interface_t, surface_t, surface_of, shortest_edge, plate_link_t, new_interface, &
-             tie_to_plate, plate_surface, tangential_tractions
+             tie_to_plate, plate_surface, tangential_tractions, probe_copy
 
    real(wp), parameter :: ROUNDINGS = 4.0_wp   !< Roundings of a displacement: of the node, and of its place by three
                                                !< unknowns.
@@ -54,18 +55,12 @@ module contact_interfaces
       integer :: sealed = 0                 !< Slave nodes that are impervious in the step under way.
    end type contact_interface_t
 
-   !> All contacts of a model: their forces depend on the displacements alone, and bring unknowns together that no
-   !> element joins.
-   type :: contacts_t
+   type, extends(surface_forces_t) :: contacts_t
       type(contact_interface_t), allocatable :: interfaces(:)   !< Contacts of the model, then what is tied to plates.
       type(contact_status_t) :: status      !< Status of the first interface that failed.
       integer :: corrections = 0            !< Corrections that the step had had at the last evaluation.
-      ! Outcome of the last evaluation.
-      integer :: active = 0                 !< Nodes that are in contact.
-      logical :: unsettled = .false.        !< Part of what the iterate asks for is held back: it is no solution yet.
-      real(wp) :: rounding = 0.0_wp         !< Rounding of differences of displacements, times stiffness [kN].
    contains
-      procedure :: act, evaluate, missing, add, forces, find_closed, stretch
+      procedure :: act, evaluate, missing, add, message, forces, find_closed, stretch
       procedure :: probe, begin_friction, accept_friction, exchange_friction
    end type contacts_t
 contains
@@ -181,10 +176,9 @@ contains
       q = [(x(plate%field(k), plate%node(k)), k=1, size(q))]
    end function motion_of
 
-   !> Sets which contacts of the model act from now on; what is tied always does.
    subroutine act(self, acts)
       class(contacts_t), intent(inout) :: self
-      logical, intent(in) :: acts(:)   !< (contacts)
+      logical, intent(in) :: acts(:)
 
       self%interfaces(:size(acts))%acts = acts
    end subroutine act
@@ -193,8 +187,8 @@ contains
    !> to 4. A node that slid before the last correction does not slide the other way: section 9.
    logical function evaluate(self, x, corrections, with_slopes) result(good)
       class(contacts_t), intent(inout) :: self
-      real(wp), intent(in) :: x(:, :)      !< (FIELDS, nodes) At the level l_f; displacements first [m].
-      integer, intent(in) :: corrections   !< Corrections of Newton's method that the step has had.
+      real(wp), intent(in) :: x(:, :)
+      integer, intent(in) :: corrections
       logical, intent(in) :: with_slopes
       real(wp) :: rounding(size(self%interfaces))   !< Force of a relative change of 1 of what is subtracted [kN].
       integer :: i
@@ -232,6 +226,13 @@ contains
       self%rounding = ROUNDINGS*epsilon(1.0_wp)*norm2(rounding)
    end function evaluate
 
+   function message(self) result(text)
+      class(contacts_t), intent(in) :: self
+      character(:), allocatable :: text
+
+      text = contact_message(self%status)
+   end function message
+
    !> Evaluates the contacts without slopes, into `probe` of every interface that acts: the outcome of the last
    !> evaluation within a step stays.
    logical function probe(self, x) result(good)
@@ -249,6 +250,20 @@ contains
          end associate
       end do
    end function probe
+
+   !> Probes a copy of contacts, for those who may not change the contacts of a run.
+   subroutine probe_copy(contacts, x, copy, good)
+      class(surface_forces_t), intent(in) :: contacts   !< Such of contacts_t.
+      real(wp), intent(in) :: x(:, :)                   !< (FIELDS, nodes) Displacements first [m].
+      type(contacts_t), intent(out) :: copy
+      logical, intent(out) :: good
+
+      select type (contacts)
+      type is (contacts_t)
+         copy = contacts
+      end select
+      good = copy%probe(x)
+   end subroutine probe_copy
 
    !> Evaluates one contact, with the friction that its step starts from; aside, no node has slid before. status: as of
    !> contact_evaluate.
@@ -350,7 +365,6 @@ contains
       if (allocated(t%friction)) tractions = t%friction%traction
    end function tangential_tractions
 
-   !> Lists pairs of unknowns of the slopes of the last evaluation that a pattern has no place for. (2, pairs)
    function missing(self, pattern) result(pairs)
       class(contacts_t), intent(in) :: self
       type(pattern_t), intent(in) :: pattern
@@ -392,13 +406,13 @@ contains
       end subroutine list
    end function missing
 
-   !> Adds the last evaluation to the equations. docs/theory/contact.md section 3.
+   !> docs/theory/contact.md section 3.
    subroutine add(self, pattern, share, with_slopes, residual, scale, values)
       class(contacts_t), intent(in) :: self
       type(pattern_t), intent(in) :: pattern
-      real(wp), intent(in) :: share   !< Slope of the evaluated displacements against the new ones, l_f [-].
+      real(wp), intent(in) :: share
       logical, intent(in) :: with_slopes
-      real(wp), intent(inout) :: residual(:), scale(:), values(:)   !< (unknowns) [kN], twice; (entries).
+      real(wp), intent(inout) :: residual(:), scale(:), values(:)
       integer :: i
 
       do i = 1, size(self%interfaces)
@@ -432,11 +446,10 @@ contains
       end subroutine add_one
    end subroutine add
 
-   !> Finds the distances of tied nodes from their places on plates, which pull; 0 elsewhere [m].
    subroutine stretch(self, x, stretched)
       class(contacts_t), intent(in) :: self
-      real(wp), intent(in) :: x(:, :)            !< (FIELDS, nodes) Displacements first [m].
-      real(wp), intent(out) :: stretched(:, :)   !< (DISPLACEMENTS, nodes)
+      real(wp), intent(in) :: x(:, :)
+      real(wp), intent(out) :: stretched(:, :)
       integer :: i
 
       stretched = 0.0_wp
@@ -448,12 +461,10 @@ contains
       end do
    end subroutine stretch
 
-   !> Finds the contacts of the model that are closed at given displacements; none where these are refused. The outcome
-   !> of the last evaluation stays.
    subroutine find_closed(self, x, closed)
       class(contacts_t), intent(inout) :: self
-      real(wp), intent(in) :: x(:, :)      !< (FIELDS, nodes) Displacements first [m].
-      logical, intent(out) :: closed(:)    !< (contacts)
+      real(wp), intent(in) :: x(:, :)
+      logical, intent(out) :: closed(:)
       integer :: i
 
       closed = .false.
@@ -465,13 +476,12 @@ contains
       end do
    end subroutine find_closed
 
-   !> Finds the forces at given displacements, to be added to the internal ones; false where these are refused. The
-   !> outcome of the last evaluation stays.
    logical function forces(self, dofs, x, force) result(good)
       class(contacts_t), intent(inout) :: self
       type(dofs_t), intent(in) :: dofs
-      real(wp), intent(in) :: x(:, :)   !< (FIELDS, nodes) Displacements first [m].
-      real(wp), allocatable, intent(out) :: force(:)   !< Force on every unknown [kN]. (unknowns)
+      real(wp), intent(in) :: x(:, :)
+      real(wp), allocatable, intent(out) :: force(:)
+
       real(wp), allocatable :: f(:)
       integer :: c, k, n
 

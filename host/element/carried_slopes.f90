@@ -50,7 +50,7 @@ contains
    !> Exchanges the slopes with an archive: the next step begins with them.
    subroutine exchange_slopes(slopes, archive)
       type(slopes_t), intent(inout) :: slopes
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       real(wp) :: strain(PLANE**2, size(slopes%strain, 3))
 
       strain = reshape(slopes%strain, shape(strain))

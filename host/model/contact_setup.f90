@@ -5,6 +5,7 @@ module contact_setup
    use kinds, only: wp
    use boundary_conditions, only: plate_loads
    use model_types, only: model_t, plate_t
+   use surface_forces, only: surface_forces_t
    use unknown_fields, only: AT_U_Z
    use contact_types, only: contact_status_t, contact_message, CONTACT_OK, TWO_PI
    use contact_interfaces, only: contacts_t, surface_t, plate_link_t, surface_of, new_interface, tie_to_plate, &
@@ -19,8 +20,9 @@ contains
    !> where contact_prepare refuses them. Without contacts nothing is allocated.
    subroutine prepare_contacts(model, contacts, fault)
       type(model_t), intent(in) :: model
-      type(contacts_t), allocatable, intent(out) :: contacts
+      class(surface_forces_t), allocatable, intent(out) :: contacts
       type(fault_t), intent(inout) :: fault
+      type(contacts_t), allocatable :: built
       type(contact_status_t) :: status
       type(surface_t) :: master
       type(plate_link_t) :: link
@@ -28,8 +30,8 @@ contains
 
       at = size(model%contacts)
       if (at == 0 .and. .not. any(model%plates%penalty > 0.0_wp)) return
-      allocate (contacts)
-      allocate (contacts%interfaces(at + count(model%plates%penalty > 0.0_wp)))
+      allocate (built)
+      allocate (built%interfaces(at + count(model%plates%penalty > 0.0_wp)))
       associate (mesh => model%domain%mesh)
          do i = 1, size(model%contacts)
             associate (one => model%contacts(i))
@@ -41,7 +43,7 @@ contains
                   master = surface_of(facing_edges(model, one%master, one%in_stage), mesh%x)
                end if
                call new_interface(model%dofs, surface_of(facing_edges(model, one%slave, one%in_stage), mesh%x), &
-                                  master, link, one%options, contacts%interfaces(i), status)
+                                  master, link, one%options, built%interfaces(i), status)
                if (status%code == CONTACT_OK) cycle
                call raise(fault, EXIT_INPUT, 'Contact '//trim(one%name)//': '//contact_message(status)//'.')
                return
@@ -53,10 +55,11 @@ contains
                if (.not. plate%penalty > 0.0_wp) cycle
                at = at + 1
                call tie_to_plate(model%dofs, surface_of(mesh%groups(plate%group)%edges, mesh%x), link_of(plate), &
-                                 plate%penalty, contacts%interfaces(at))
+                                 plate%penalty, built%interfaces(at))
             end associate
          end do
       end associate
+      call move_alloc(built, contacts)
    end subroutine prepare_contacts
 
    !> Describes a plate as contacts know it.

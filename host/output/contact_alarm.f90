@@ -4,7 +4,7 @@
 module contact_alarm
    use warnings, only: print_warning
    use kinds, only: wp
-   use contact_interfaces, only: contacts_t, shortest_edge
+   use contact_interfaces, only: contacts_t, shortest_edge, probe_copy
    use run_state, only: run_t
    use texts, only: place_text, short
    use unknown_fields, only: AT_U_Z
@@ -29,10 +29,11 @@ contains
       type(contacts_t) :: contacts
       real(wp) :: depth
       integer :: i, at
+      logical :: good
 
       if (size(run%model%contacts) == 0) return
-      contacts = run%system%contacts
-      if (.not. contacts%probe(run%state%x)) return
+      call probe_copy(run%system%contacts, run%state%x, contacts, good)
+      if (.not. good) return
       do i = 1, size(run%model%contacts)
          associate (t => contacts%interfaces(i), one => run%model%contacts(i), x => run%state%x)
             if (.not. t%acts) cycle
@@ -76,16 +77,20 @@ contains
       character(:), allocatable :: name
       integer :: i
 
-      do i = 1, size(run%model%contacts)
-         associate (t => run%system%contacts%interfaces(i))
-            if (.not. t%acts .or. t%result%unpressed <= ALARMING_DEPTH) cycle
-            name = 'contact '//trim(run%model%contacts(i)%name)
-            call print_warning(name//', time '//short(run%next%time)//' s: near '// &
-               place_text(t%result%unpressed_at)//' the surfaces have penetrated each other by '// &
-               short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
-               'gap = ''combined'' in &contact, or refine the slave there.', once='penetration of '//name)
-         end associate
-      end do
+      if (size(run%model%contacts) == 0) return
+      select type (contacts => run%system%contacts)
+      type is (contacts_t)
+         do i = 1, size(run%model%contacts)
+            associate (t => contacts%interfaces(i))
+               if (.not. t%acts .or. t%result%unpressed <= ALARMING_DEPTH) cycle
+               name = 'contact '//trim(run%model%contacts(i)%name)
+               call print_warning(name//', time '//short(run%next%time)//' s: near '// &
+                  place_text(t%result%unpressed_at)//' the surfaces have penetrated each other by '// &
+                  short(100*t%result%unpressed)//' % of an edge without pressure, which its gaps do not see. Set '// &
+                  'gap = ''combined'' in &contact, or refine the slave there.', once='penetration of '//name)
+            end associate
+         end do
+      end select
    end subroutine warn_of_penetration
 
    !> Warns at the end of a stage without inertia of contacts that press with little more than the rounding of places,
@@ -96,7 +101,8 @@ contains
       integer :: i
 
       if (size(run%model%contacts) == 0 .or. run%stage%has_inertia) return
-      associate (contacts => run%system%contacts)
+      select type (contacts => run%system%contacts)
+      type is (contacts_t)
          thrust = 0.0_wp
          do i = 1, size(run%model%contacts)
             associate (t => contacts%interfaces(i))
@@ -109,6 +115,6 @@ contains
             trim(run%stage%name)//': contacts press with '//short(thrust)//' kN, of which '// &
             short(contacts%rounding)//' kN may be rounding: gaps are differences of places, and the penalty '// &
             'multiplies their digits. Set a smaller penalty, or measure heights from near the contact.')
-      end associate
+      end select
    end subroutine warn_of_rounding
 end module contact_alarm

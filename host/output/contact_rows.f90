@@ -3,7 +3,7 @@
 module contact_rows
    use kinds, only: wp
    use boundary_conditions, only: plate_loads
-   use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions
+   use contact_interfaces, only: contacts_t, contact_interface_t, tangential_tractions, probe_copy
    use model_types, only: model_t, plate_t
    use run_state, only: run_t
    use run_tables, only: columns_of
@@ -42,9 +42,14 @@ contains
       real(wp), allocatable :: row(:)
       integer :: i
 
-      row = [run%state%time, run%scheme%dt, work, &
-             (values(run%system%contacts%interfaces(i)), i=1, size(run%model%contacts)), &
-             (of_plate(run%model%plates(i)), i=1, size(run%model%plates))]
+      row = [run%state%time, run%scheme%dt, work]
+      if (allocated(run%system%contacts)) then
+         select type (contacts => run%system%contacts)
+         type is (contacts_t)
+            row = [row, (values(contacts%interfaces(i)), i=1, size(run%model%contacts))]
+         end select
+      end if
+      row = [row, (of_plate(run%model%plates(i)), i=1, size(run%model%plates))]
    contains
       pure function of_plate(plate) result(list)
          type(plate_t), intent(in) :: plate
@@ -83,11 +88,12 @@ contains
       real(wp), allocatable :: table(:, :)   !< (8, nodes) [-, m, m, m2, -, m, kPa, kPa]
       type(contacts_t) :: contacts
       real(wp), allocatable :: shear(:)
+      logical :: good
       integer :: c, i
 
       allocate (table(8, 0))
-      contacts = run%system%contacts
-      if (.not. contacts%probe(run%state%x)) return
+      call probe_copy(run%system%contacts, run%state%x, contacts, good)
+      if (.not. good) return
       do c = 1, size(run%model%contacts)
          associate (t => contacts%interfaces(c), found => contacts%interfaces(c)%probe)
             if (.not. t%acts) cycle

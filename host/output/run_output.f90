@@ -2,6 +2,7 @@
 !> The list of observers of a run. A new one needs a line here.
 module run_output
    use alarms, only: alarms_t
+   use checkpoints, only: keep_run
    use cycles_alarm, only: cycles_alarm_t
    use field_files, only: field_observer_t
    use kinds, only: wp
@@ -25,6 +26,7 @@ contains
       type(observers_t), intent(out) :: observers
 
       observers%folder = folder
+      observers%keep => keep_run
       call observers%add(folder_observer_t())
       if (.not. quiet) call observers%add(progress_observer_t())
       call observers%add(alarms_t())

@@ -57,11 +57,23 @@ module run_observer
       character(:), allocatable :: folder   !< Folder of the results, for observers that are added.
       type(slot_t), allocatable :: list(:)
       integer :: begun = 0                  !< Number of those that have begun: these are told the end.
+      procedure(keep_i), pointer, nopass :: keep => null()   !< Keeps the run with what all of them keep.
    contains
       procedure :: add
       procedure :: tell
       procedure :: exchange => exchange_all
    end type observers_t
+
+   abstract interface
+      !> Keeps a run after a step where that is due, so that another run can go on from there. Faults are those of the
+      !> keeper.
+      subroutine keep_i(run, observers, fault)
+         import :: run_t, observers_t, fault_t
+         type(run_t), intent(inout) :: run
+         type(observers_t), intent(inout) :: observers
+         type(fault_t), intent(inout) :: fault
+      end subroutine keep_i
+   end interface
 contains
    !> Exchanges with a checkpoint what the observer needs to go on after a restart.
    subroutine exchange(self, archive)

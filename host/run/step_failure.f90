@@ -4,7 +4,6 @@ module step_failure
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
    use kinds, only: wp
    use acting_places, only: location_of
-   use contact_types, only: contact_message
    use faults, only: fault_t, raise
    use texts, only: place_text, short, whole
    use exit_codes, only: EXIT_CONVERGENCE, EXIT_MATERIAL, EXIT_FREE_BODY, EXIT_SOLVER
@@ -49,7 +48,7 @@ contains
             call m%regions(m%region_of(e))%law%message(run%assembly%bad, text)
             call raise(fault, EXIT_MATERIAL, place//', refuses: '//trim(text)//unstressed(run))
          case (CONTACT_FAILED)
-            call raise(fault, EXIT_CONVERGENCE, place//contact_message(run%system%contacts%status)//'.')
+            call raise(fault, EXIT_CONVERGENCE, place//run%system%contacts%message()//'.')
          case (BODY_FREE)
             alone = unequal_slopes(run)
             if (alone /= '') then

@@ -2,7 +2,6 @@
 !> Runs the stages of a model: steps, and cuts with exact restoration. Observers are told what happens.
 module time_stepping
    use kinds, only: wp
-   use checkpoints, only: keep_run
    use faults, only: fault_t
    use porous_domain, only: copy_state
    use run_observer, only: observers_t, FITS, BEGINS, STAGE_BEGINS, STEP, TAKEN_OVER, REPEATED, STAGE_ENDS, &
@@ -113,7 +112,7 @@ contains
          end if
       end associate
       call observers%tell(TAKEN_OVER, run, fault)
-      if (fault%code == 0) call keep_run(run, observers, fault)
+      if (fault%code == 0 .and. associated(observers%keep)) call observers%keep(run, observers, fault)
       if (fault%code == 0) fault = verdict
    end subroutine close_step
 

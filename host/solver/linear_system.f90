@@ -96,7 +96,7 @@ contains
    !> matrix, so that they are the same.
    subroutine exchange_factors(s, archive)
       class(solution_t), intent(inout) :: s
-      type(archive_t), intent(inout) :: archive
+      class(archive_t), intent(inout) :: archive
       integer, allocatable :: fixed(:), air(:)
       integer :: status
 

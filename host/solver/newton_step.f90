@@ -16,8 +16,7 @@ module newton_step
    use linear_system, only: solve_step, solve_anew, asked_for, update_contacts
    use prescribed_values, only: constraint_t, constrain, loads_of_water
    use sparse_factors, only: SOLVED, SINGULAR, NOT_FINITE
-   use solution, only: solution_t, system_t, control_t, log_t, BY_FORCES, BY_CHANGE, T_ASSEMBLY, T_REST, T_MATERIAL, &
-                       T_CONTACT
+   use solution, only: solution_t, control_t, log_t, BY_FORCES, BY_CHANGE, T_ASSEMBLY, T_REST, T_MATERIAL, T_CONTACT
    use sparsity_pattern, only: entry_of
    use springs, only: add_springs, add_linear_forces
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_P_C

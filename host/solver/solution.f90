@@ -3,7 +3,6 @@
 !> and after, the place in the stages, and how the step is taken.
 module solution
    use kinds, only: wp
-   use contact_interfaces, only: contacts_t
    use degrees_of_freedom, only: dofs_t
    use equation_assembly, only: assembly_t
    use generalised_alpha, only: scheme_t
@@ -11,6 +10,7 @@ module solution
    use prescribed_values, only: constraint_t
    use sparse_factors, only: sparse_t
    use sparsity_pattern, only: pattern_t
+   use surface_forces, only: surface_forces_t
    use unknown_fields, only: FIELDS
    implicit none (type, external)
    private
@@ -79,7 +79,7 @@ module solution
    !> The linear system, and what is kept of it from step to step.
    type :: system_t
       type(sparse_t) :: sparse
-      type(contacts_t), allocatable :: contacts   !< Not allocated: the model has none.
+      class(surface_forces_t), allocatable :: contacts   !< Not allocated: the model has none.
       integer, allocatable :: extra(:, :)     !< (2, pairs) unknowns that surfaces and springs have brought together so
                                               !< far, each listed both ways round.
       logical :: analysed = .false.

@@ -10,7 +10,6 @@ module contact_drainage
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t
    use contact_interfaces, only: contacts_t
-   use contact_types, only: contact_message
    use prescribed_values, only: constraint_t
    use faults, only: fault_t, raise, EXIT_INPUT
    use scene_parts, only: place_of
@@ -82,12 +81,14 @@ contains
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      if (problem%system%contacts%probe(problem%state%x)) then
-         call seal(self, problem%model, problem%system%contacts, problem%constraint)
-      else
-         call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '// &
-                    contact_message(problem%system%contacts%status)//'.')
-      end if
+      select type (contacts => problem%system%contacts)
+      type is (contacts_t)
+         if (contacts%probe(problem%state%x)) then
+            call seal(self, problem%model, contacts, problem%constraint)
+         else
+            call raise(fault, EXIT_CONVERGENCE, 'Drainage at the start of a step: '//contacts%message()//'.')
+         end if
+      end select
    end subroutine before_step
 
    subroutine seal(self, model, contacts, constraint)

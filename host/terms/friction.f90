@@ -8,7 +8,8 @@ module friction
    use key_schema, only: UNBOUNDED
    use key_table, only: key_table_t
    use model_types, only: model_t, problem_t
-   use contact_types, only: contact_options_t, contact_message, has_friction
+   use contact_interfaces, only: contacts_t
+   use contact_types, only: contact_options_t, has_friction
    use faults, only: fault_t, raise
    use scene_term, only: scene_term_t
    implicit none (type, external)
@@ -47,8 +48,11 @@ contains
       type(problem_t), intent(inout) :: problem
       type(fault_t), intent(inout) :: fault
 
-      if (.not. problem%system%contacts%begin_friction(problem%state%x)) call raise(fault, EXIT_CONVERGENCE, &
-         'Friction at the start of a step: '//contact_message(problem%system%contacts%status)//'.')
+      select type (contacts => problem%system%contacts)
+      type is (contacts_t)
+         if (.not. contacts%begin_friction(problem%state%x)) &
+            call raise(fault, EXIT_CONVERGENCE, 'Friction at the start of a step: '//contacts%message()//'.')
+      end select
    end subroutine before_step
 
    !> Takes over the tractions at the end of the step, and what sliding has dissipated.
@@ -58,8 +62,11 @@ contains
       real(wp), intent(inout) :: dissipated
       real(wp) :: by_sliding
 
-      call problem%system%contacts%accept_friction(problem%next%x, by_sliding)
-      dissipated = dissipated + by_sliding
+      select type (contacts => problem%system%contacts)
+      type is (contacts_t)
+         call contacts%accept_friction(problem%next%x, by_sliding)
+         dissipated = dissipated + by_sliding
+      end select
    end subroutine accept
 
    subroutine exchange(self, problem, archive)
@@ -67,6 +74,9 @@ contains
       type(problem_t), intent(inout) :: problem
       class(archive_t), intent(inout) :: archive
 
-      call problem%system%contacts%exchange_friction(archive)
+      select type (contacts => problem%system%contacts)
+      type is (contacts_t)
+         call contacts%exchange_friction(archive)
+      end select
    end subroutine exchange
 end module friction

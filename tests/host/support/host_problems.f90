@@ -65,7 +65,11 @@ contains
       type(run_t), target, intent(inout) :: run
       type(contacts_t), pointer :: contacts
 
-      contacts => run%system%contacts
+      contacts => null()
+      select type (forces => run%system%contacts)
+      type is (contacts_t)
+         contacts => forces
+      end select
    end function contacts_of
 
    !> A scene from its text, with the fault for the caller.

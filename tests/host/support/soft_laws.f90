@@ -2,8 +2,8 @@
 !> Laws that are hard to solve for, for the tests of what the host does about it.
 !>
 !> One has no stiffness: it is elastic as long as an increment is short; one that is longer meets nine tenths of the
-!> stress and a tangent of zero. It may refuse batches of many points, and no point of a shorter one. The other one has a
-!> kink: behind it the stress grows with the root of the strain.
+!> stress and a tangent of zero. It may refuse batches of many points, and no point of a shorter one. The other one has
+!> a kink: behind it the stress grows with the root of the strain.
 module soft_laws
    use kinds, only: wp
    use material_elastic, only: elastic_t, isotropic
