@@ -200,6 +200,9 @@ def plot_test(
         runs = {f"test {i}": test for i, test in enumerate(tests, 1)}
     if not runs:
         raise InputError("there is no test to draw")
+    for label, run in runs.items():
+        if not isinstance(run, Mapping) or "eps_a" not in run:
+            raise InputError(f"{label} is {run!r}: each is a result of mud.element_test, or columns of one by name")
     measured = {}
     for name, values in (laboratory or {}).items():
         if name not in _LABORATORY:
@@ -231,8 +234,11 @@ def plot_test(
 @style()
 def plot_histories(run: HostRun, columns: Sequence[str], output: str | os.PathLike | None = None) -> Figure:
     """Histories of a run of the host against time [s], a panel for each column ("POINT.QUANTITY"). Returns the figure."""
-    from .errors import UnknownName
+    from .errors import InputError, UnknownName
 
+    columns = [columns] if isinstance(columns, str) else list(columns)
+    if not columns:
+        raise InputError('there is no history to draw: columns is empty; it is a list such as ["foot.u_z"]')
     plt = pyplot()
     table = run.histories
     time = table[next(iter(table))]

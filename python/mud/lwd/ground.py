@@ -18,6 +18,7 @@ PENALTY, STIFFER = 1e8, 100.0  # of the contact by default [kN/m3]; over Young's
 MOST_PERMEABLE, HEAVIEST_GRAINS = 1e-6, 10.0  # beyond which a number has another unit [m2], [Mg/m3]
 FRAMES = 1e-3  # fields of the last drop are written so often [s]
 BEFORE = 5e-4  # a mass that falls is this near to its buffer when the drop begins [s]
+SOFTEST = 1e3  # Young's modulus of an elastic layer, below it of a wrong unit: plates would sink by more than 20 mm [kPa]
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,11 @@ class Layer:
             young, poisson = -1.0, 0.0
         if not (0 < young < math.inf and 0 <= poisson < 0.5):
             raise InputError(f"{self.material}: an elastic layer is elastic:YOUNG or elastic:YOUNG:POISSON, in kPa")
+        if young < SOFTEST:
+            raise InputError(
+                f"{self.material}: Young's modulus is {young:g} kPa, too soft for any of these devices ({SOFTEST:g} kPa or "
+                f"more); it is given in kPa: {young:g} MPa are elastic:{1000 * young:g}"
+            )
         return young, poisson
 
 
