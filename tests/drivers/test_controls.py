@@ -335,6 +335,11 @@ def test_a_stress_that_cannot_be_reached_ends_with_code_3():
         done = subprocess.run([*plot, work / "case.csv"], capture_output=True, text=True)
         check("plot_case draws a page", done.returncode == 0 and (work / "case.png").stat().st_size > 20000,
               done.stderr)
+        text = (work / "case.csv").read_text()
+        (work / "mpa.csv").write_text(text.replace("effective [kPa]", "effective [MPa]"))
+        done = subprocess.run([*plot, work / "case.csv", work / "mpa.csv"], capture_output=True, text=True)
+        check("plot_case does not draw two units together", "effective [kPa]" in text and done.returncode == 1
+              and "in kPa, " in done.stderr and "in MPa" in done.stderr, done.stderr)
         done = subprocess.run([*plot, work / "case.nml"], capture_output=True, text=True)
         check("plot_case refuses what is no result", done.returncode ==
               1 and "cannot be read" in done.stderr, done.stderr)

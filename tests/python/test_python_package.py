@@ -565,6 +565,11 @@ def test_is_the_programs_digit_by_digit():
     sheared = mud.element_test(sand, mud.Stage("simple_shear_drained", gamma_end=0.02), p_eff=100.0, void_ratio=0.8)
     labels = [axis.get_xlabel() for axis in mud.plot_test([sheared, sheared]).axes]
     check("simple shear is drawn over shear strain", labels[0] == "shear strain [%]", labels)
+    in_mpa = mud.element_test(sand.converted(1e-3), mud.Stage("drained", eps_a_end=0.02), p_eff=0.1, void_ratio=0.8)
+    labels = [axis.get_ylabel() for axis in mud.plot_test(in_mpa).axes]
+    check("stresses in MPa are drawn as such", labels[0] == "deviator stress q [MPa]", labels)
+    told = refused(mud.InputError, lambda: mud.plot_test({"a": tight, "b": in_mpa}))
+    check("tests of two units are not drawn together", "a in kPa, b in MPa" in told, told)
     titles = [axis.get_title() for axis in mud.plot_test(collapse).axes]
     check("wetting is drawn over suction", "retention" in titles and "wetting and drying" in titles, titles)
     round_off = {**collapse, "q": collapse["q"][0] + 1e-11 * np.arange(len(collapse["q"]))}
