@@ -17,7 +17,7 @@ sys.path[:0] = [str(root / "python"), str(root / "common")]
 import mud  # noqa: E402
 import tables  # noqa: E402
 from mud.calibration import Effort, calibrate, make_task, read_table, read_task, simulate, use_of  # noqa: E402
-from mud.calibration import answers_of, misfits_of, write_material, write_report  # noqa: E402
+from mud.calibration import answers_of, misfit_of, misfits_of, write_material, write_report  # noqa: E402
 from mud.calibration.command import main  # noqa: E402
 from mud.calibration.simulation import SETTINGS, earth_pressure, natural  # noqa: E402
 from mud.calibration.variables import VARIABLES, parameters_of, pins_of  # noqa: E402
@@ -687,6 +687,20 @@ def test_the_page_lists_the_library_of_materials_as_its_files_say():
                 if row[key]:  # recorded with four digits; tolerances of the integration
                     check( f"{name}, {told.name}: {key} is as recorded", abs(
                         float(row[key]) - value) < room, (row[key], value) )
+
+
+def test_the_misfit_of_a_sample_that_liquefies_is_a_number():
+    # q and p of the laboratory come to 0; the model's are there 1.5 % of the largest: three quarters of the floor of 2 %.
+    lines = ("eps_a_percent,q_kPa,p_kPa,e_0", "0,0,100,0.95", "0.5,30,70,0.95", "1,20,40,0.95", "15,0,0,0.95")
+    (work / "liquid.csv").write_text("\n".join(lines) + "\n")
+    item = make_task("k", [{"file": work / "liquid.csv", "kind": "undrained"}]).items[0]
+    rows = item.use.rows
+    answer = simulate(truth, item.test, item.use)
+    answer.columns["q"] = item.test["q"][rows] + np.where(item.test["q"][rows] > 0, 0, 0.015 * 30)
+    answer.columns["p"] = item.test["p"][rows] * 1.1
+    told = misfit_of(item, answer)
+    check("q", abs(told.q - 75 / math.sqrt(2)) < 1e-9, told.q)
+    check("p", abs(told.p - 10 / math.sqrt(2)) < 1e-9, told.p)
 
 
 def test_a_task_starts_from_a_material_file_beside_it():
