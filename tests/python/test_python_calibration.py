@@ -636,7 +636,8 @@ def test_m_c_of_the_friction_angle():
         told = refusal(lambda: make_task("k", [{**make_tables("true.csv")[0], **table}]))
         check(f"{table} is refused", word in told, told)
     small = make_task("k", make_tables("true.csv")[0], held_out="D", known={"m_c": 1.2})
-    check("a name of a parameter in other letters is known", small.base["M_c"] == 1.2 and "M_c" in small.origins, small.origins)
+    known = small.base["M_c"] == 1.2 and "M_c" in small.origins
+    check("a name of a parameter in other letters is known", known, small.origins)
     check("one test is held out by its name", [i.test.name for i in small.items if i.test.held_out] == ["D"])
     for others, word in (({"bounds": {"h_0": (20.0, 8.0)}}, "from 20 to 8"),
                          ({"bounds": {"h_0": (2.0, math.inf)}}, "from 2 to inf"),
@@ -690,7 +691,7 @@ def test_the_page_lists_the_library_of_materials_as_its_files_say():
 
 
 def test_the_misfit_of_a_sample_that_liquefies_is_a_number():
-    # q and p of the laboratory come to 0; the model's are there 1.5 % of the largest: three quarters of the floor of 2 %.
+    # q and p of the laboratory come to 0; the model's q is there 1.5 % of the largest: three quarters of the floor.
     lines = ("eps_a_percent,q_kPa,p_kPa,e_0", "0,0,100,0.95", "0.5,30,70,0.95", "1,20,40,0.95", "15,0,0,0.95")
     (work / "liquid.csv").write_text("\n".join(lines) + "\n")
     item = make_task("k", [{"file": work / "liquid.csv", "kind": "undrained"}]).items[0]
