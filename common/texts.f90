@@ -9,7 +9,7 @@ module texts
    implicit none (type, external)
    private
    public :: lower_case, short, whole, place_text, read_number, from_c, text_at, joined, word_place, mark_length, &
-             LENGTH, PATH_LENGTH
+             shell_word, LENGTH, PATH_LENGTH
 
    integer, parameter :: LENGTH = 256        !< Longest key or value of a text that is read.
    integer, parameter :: PATH_LENGTH = 1024  !< Longest path of a file that is read, as of a word of a command line.
@@ -152,6 +152,26 @@ contains
       write (digits, '(i0)') value
       text = trim(digits)
    end function whole_64
+
+   !> A path, without trailing blanks, as a word that a shell takes: between ' if it has more than letters, figures and
+   !> marks without a meaning there. Letters beyond ASCII have none.
+   pure function shell_word(path) result(word)
+      character(*), intent(in) :: path
+      character(:), allocatable :: word
+      integer :: i
+
+      word = trim(path)
+      if (word /= '' .and. scan(word, ' !"#$&''()*;<=>?[\]^`{|}~'//achar(9)//achar(10)) == 0) return
+      word = ''
+      do i = 1, len_trim(path)
+         if (path(i:i) == '''') then
+            word = word//'''\'''''
+         else
+            word = word//path(i:i)
+         end if
+      end do
+      word = ''''//word//''''
+   end function shell_word
 
    !> Reads a decimal number; anything that is not entirely one ('1.2.3', '1e999', 'nan') is refused. value is then 0
    !> and good false.

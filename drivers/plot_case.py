@@ -6,6 +6,7 @@ pore pressure where it builds up, suction and saturation where suction moves, cy
 """
 import argparse
 import pathlib
+import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -30,7 +31,11 @@ def draw(results, output):
     labels = [facts.get("case", f"result {i}") for i, (facts, _) in enumerate(results, 1)]
     labels = [f"{label} ({i})" if labels.count(label) > 1 else label for i, label in enumerate(labels, 1)]
     runs = dict(zip(labels, (run for _, run in results)))
-    figure = plots.draw(plt, runs, plots.panels(list(runs.values()))[:6])
+    units = [re.search(r"effective \[(\w+)\]|$", facts.get("conventions", ""))[1] or "kPa" for facts, _ in results]
+    if len(set(units)) > 1:
+        told = ", ".join(f"{label} in {unit}" for label, unit in zip(labels, units))
+        sys.exit(f"plot_case: the stresses have different units: {told}; draw those of one unit together")
+    figure = plots.draw(plt, runs, plots.panels(list(runs.values()))[:6], units[0])
     facts = results[0][0]
     title = ", ".join(labels) if len(results) > 1 else facts.get("title") or facts.get("case")
     if len(results) > 1:

@@ -6,6 +6,7 @@ module host_options
    use faults, only: fault_t, raise, EXIT_INPUT
    use files, only: folder_of
    use scene_keys, only: print_template
+   use texts, only: shell_word
    implicit none (type, external)
    private
    public :: options_t, read_options
@@ -51,7 +52,7 @@ contains
          stop
       else if (option_given(words, '--accuracy')) then
          call raise(fault, EXIT_INPUT, '--accuracy is no option of a run: --step-tolerance sets the local '// &
-                    'tolerance of its steps; "mud_study accuracy '//trim(scene)//' --accuracy '// &
+                    'tolerance of its steps; "mud_study accuracy '//shell_word(scene)//' --accuracy '// &
                     option_value(words, '--accuracy')//'" measures the errors of the answers.')
          return
       end if

@@ -43,6 +43,7 @@ module triax_case
    end type initial_t
 
    real(wp), parameter :: ATMOSPHERE = 101.325_wp   !< [kPa]
+   real(wp), parameter :: SOFTEST_WATER = 1.0e4_wp  !< [kPa] A smaller bulk modulus is one in GPa or MPa.
    !> [kPa] Stress of a start: grains of sand crush long before.
    real(wp), parameter :: LEAST = 1.0e-6_wp, MOST = 5.0e4_wp
    real(wp), parameter :: ZERO = 0.0_wp, ONE = 1.0_wp
@@ -300,6 +301,10 @@ contains
       if (fault%code == 0) call start_sample(k, initial, soil, start, fault)
       start%p_a = p_a
       soil%air%atmosphere = ATMOSPHERE*k%per_kpa
+      if (soil%air%stiffness > ZERO .and. soil%air%stiffness < SOFTEST_WATER*k%per_kpa) call raise(fault, EXIT_INPUT, &
+         at_line(k%group%file, line_of(k%group, 'k_w'))//'k_w = '//short(soil%air%stiffness)//' '//trim(k%stress)// &
+         ' is no bulk modulus of water, which is '//short(2.2e6_wp*k%per_kpa)//' '//trim(k%stress)// &
+         '; 0 is incompressible.')
       if (.not. soil%air%atmosphere + p_a > 0.0_wp) call raise(fault, EXIT_INPUT, at_line(k%group%file, &
          line_of(k%group, 'air_pressure'))//'air_pressure = '//short(p_a)//' is below vacuum: it counts from the '// &
          'atmosphere, and must exceed '//short(-soil%air%atmosphere)//' '//trim(k%stress)//'.')

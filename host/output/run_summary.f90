@@ -11,7 +11,7 @@ module run_summary
    use run_cost, only: print_cost
    use run_observer, only: observer_t, BEGINS, TAKEN_OVER, STAGE_ENDS, ENDS
    use run_state, only: run_t, LIMITS, LIMIT_NAMES
-   use texts, only: short, whole
+   use texts, only: shell_word, short, whole
    use unknown_fields, only: FIELDS, FIELD_NAMES, DISPLACEMENTS
    use wall_clock, only: clock
    use warnings, only: repeat_warnings
@@ -127,7 +127,7 @@ contains
       write (unit, '(a)') text//'.'
       call repeat_warnings(unit)
       write (unit, '(a)') 'The errors of these answers are not known; "mud_study accuracy '// &
-         trim(run%model%origin%file)//'" measures them.'
+         shell_word(run%model%origin%file)//'" measures them.'
    end subroutine print_summary
 
    !> Says a value in the multiple of its unit that a reader would choose: metres and seconds also in thousandths and

@@ -15,7 +15,7 @@ module scene_keys
    use settings_builder, only: build_settings, build_fluids, build_point
    use stage_builder, only: build_history, build_stage
    use term_registry, only: with_own_groups, declare_keys
-   use texts, only: LENGTH
+   use texts, only: LENGTH, shell_word
    implicit none (type, external)
    private
    public :: build_group, check_keys, check_counts, keys_of_scenes, print_template
@@ -146,15 +146,15 @@ contains
       call refuse('ordering', 'leave it out; the equations are ordered by AMD, beyond 10,000 unknowns by METIS.')
       do i = 1, size(EFFECTS)
          call refuse(trim(EFFECTS(i)), 'leave it out, and give analysis, fields and gravity; "mud_study effects '// &
-                     trim(group%file)//'" measures what each effect changes and writes the scene without those '// &
-                     'that do not matter.')
+                     shell_word(group%file)//'" measures what each effect changes and writes the scene without '// &
+                     'those that do not matter.')
       end do
    contains
       function measures() result(text)
          character(:), allocatable :: text
 
-         text = '"mud_study accuracy '//trim(group%file)//' --accuracy A" measures the errors of the answers, and '// &
-                'refines steps and mesh until they are below A.'
+         text = '"mud_study accuracy '//shell_word(group%file)//' --accuracy A" measures the errors of the answers'// &
+                ', and refines steps and mesh until they are below A.'
       end function measures
 
       subroutine refuse(key, instead)

@@ -266,7 +266,7 @@ def _of_principal_stresses(columns: Mapping[str, np.ndarray]) -> dict[str, np.nd
 def _nearest(name: str, names: object) -> str:
     """'; the nearest is X (there are ...)'."""
     begun = [other for other in names if other.startswith(f"{name}_")]  # p: p_eff
-    near = begun or difflib.get_close_matches(name, list(names), 1, 0.4)
+    near = begun or difflib.get_close_matches(str(name), list(names), 1, 0.4)
     return (f"; the nearest is {near[0]}" if near else "") + f" (there are {', '.join(names)})"
 
 

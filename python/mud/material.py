@@ -20,6 +20,7 @@ from .registry import parameters, states
 _TENSION = ", tension: tension is positive here"
 _SUCTION = states["suction"].index
 _STATE, _SLOPES = slice(6, 6 + len(states)), slice(6 + len(states), None)
+_E_LOWER, _E_UPPER = 0.01, 5.0  # void ratios that the library integrates at [-]
 _BLOCKS = 50  # doubles of mud_blocks: 36, 6, 6, 1, 1
 _REPORT = ctypes.sizeof(_native.Report)
 
@@ -184,6 +185,8 @@ class Material(Points, Mapping):
                     allowed = ", ".join(entry.options) or "numbers"
                     raise InputError(f"{entry.name} = '{value}': {entry.meaning}; allowed: {allowed}")
                 value = entry.options[value.lower()]
+            elif value is not None and np.ndim(value) > 0:
+                raise InputError(f"{entry.name} = {value!r} is not one number: {entry.meaning}")
             self.props[entry.index] = value
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -230,6 +233,8 @@ class Material(Points, Mapping):
 
     def converted(self, factor: float) -> Material:
         """The same material in another unit of stress, ``factor`` of which make one of the present unit (0.001: MPa of kPa)."""
+        if isinstance(factor, str) or not 0 < factor < np.inf:
+            raise InputError(f"factor = {factor!r}: it is a number above 0, as 0.001 from kPa to MPa")
         props = self.props.copy()
         code = _native.mud.mud_convert_props(props.ctypes.data, len(props), factor)
         if code != 0:
@@ -336,6 +341,9 @@ class Material(Points, Mapping):
     def saturation(self, suction: np.ndarray | float, void_ratio: np.ndarray | float) -> np.ndarray:
         """Degree of saturation [-] at suctions [kPa] and void ratios [-]; the shapes are broadcast together."""
         suctions, ratios = np.broadcast_arrays(np.asarray(suction, dtype=float), np.asarray(void_ratio, dtype=float))
+        wrong = ratios[~((ratios >= _E_LOWER) & (ratios <= _E_UPPER))]
+        if wrong.size:
+            raise InputError(f"void_ratio is {wrong[0]:g}, allowed {_E_LOWER:g} to {_E_UPPER:g}; it is no per cent")
         answer, value = np.empty(suctions.shape), c_double()
         for place in np.ndindex(suctions.shape):
             code = _native.mud.mud_saturation(

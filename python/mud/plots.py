@@ -144,8 +144,10 @@ def logarithmic(axis) -> None:
         which(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
 
 
-def draw(plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tuple[str, str, str, bool]]) -> Figure:
-    """A figure with a panel for each of ``pages``, a line for each run; the key stands below the panels."""
+def draw(
+    plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tuple[str, str, str, bool]], unit: str = "kPa"
+) -> Figure:
+    """A figure with a panel for each of ``pages``, a line for each run; the key stands below the panels. unit : of stress."""
     wide = 3 if len(pages) > 4 else 2
     high = -(-len(pages) // wide)
     figure, axes = plt.subplots(high, wide, figsize=(4.3 * wide, 3.3 * high + 0.3), squeeze=False, layout="constrained")
@@ -156,8 +158,8 @@ def draw(plt, runs: Mapping[str, Mapping[str, np.ndarray]], pages: Sequence[tupl
                 axis.plot(values_of(run, x), values_of(run, y), **line, lw=0.7 if run["cycle"].max() > 5 else 1.5)
                 axis.plot(values_of(run, x)[0], values_of(run, y)[0], "o", color=line["color"], ms=4)
         axis.set_title(title, fontsize=10)
-        axis.set_xlabel(_LABELS[x][0] + (", logarithmic" if log else ""))
-        axis.set_ylabel(_LABELS[y][0])
+        axis.set_xlabel(_LABELS[x][0].replace("kPa", unit) + (", logarithmic" if log else ""))
+        axis.set_ylabel(_LABELS[y][0].replace("kPa", unit))
         axis.grid(color="#dddddd", lw=0.6)
         if log:
             logarithmic(axis)
@@ -188,8 +190,8 @@ def plot_test(
     """Panels of one test, of several by label, or of a list: what they show follows from what moves in the tests, shear,
     pore pressure, cycles and suction included.
 
-    laboratory : columns eps_a and eps_v (linear strain [-]), gamma, q, tau, p, u, suction [kPa], e, S_w, r_u, cycle; where a
-        panel has both of its columns they are drawn as points.
+    laboratory : columns eps_a and eps_v (linear strain [-]), gamma, q, tau, p, u, suction [kPa, or the unit of stress of
+        the tests], e, S_w, r_u, cycle; where a panel has both of its columns they are drawn as points.
     output : picture to write; None returns the figure alone. Returns the matplotlib figure.
     """
     from .errors import InputError
@@ -200,6 +202,14 @@ def plot_test(
         runs = {f"test {i}": test for i, test in enumerate(tests, 1)}
     if not runs:
         raise InputError("there is no test to draw")
+    for label, run in runs.items():
+        if not isinstance(run, Mapping) or "eps_a" not in run:
+            raise InputError(f"{label} is {run!r}: each is a result of mud.element_test, or columns of one by name")
+    units = {label: getattr(run, "units", {}).get("q", "kPa") for label, run in runs.items()}
+    unit, *others = dict.fromkeys(units.values())
+    if others:
+        told = ", ".join(f"{label} in {one}" for label, one in units.items())
+        raise InputError(f"the stresses of the tests have different units: {told}; draw those of one unit together")
     measured = {}
     for name, values in (laboratory or {}).items():
         if name not in _LABORATORY:
@@ -209,7 +219,7 @@ def plot_test(
         measured[_LABORATORY[name]] = _LABELS[_LABORATORY[name]][1] * np.asarray(values, dtype=float)
     plt = pyplot()
     pages = [page for page in panels(list(runs.values())) if page[0] not in ("cost", "state parameter")]
-    figure, drawn = draw(plt, runs, pages), set()
+    figure, drawn = draw(plt, runs, pages, unit), set()
     for axis, (_, x, y, _) in zip(figure.axes, pages):
         if x in measured and y in measured:
             axis.plot(measured[x], measured[y], **_POINTS)
@@ -231,8 +241,11 @@ def plot_test(
 @style()
 def plot_histories(run: HostRun, columns: Sequence[str], output: str | os.PathLike | None = None) -> Figure:
     """Histories of a run of the host against time [s], a panel for each column ("POINT.QUANTITY"). Returns the figure."""
-    from .errors import UnknownName
+    from .errors import InputError, UnknownName
 
+    columns = [columns] if isinstance(columns, str) else list(columns)
+    if not columns:
+        raise InputError('there is no history to draw: columns is empty; it is a list such as ["foot.u_z"]')
     plt = pyplot()
     table = run.histories
     time = table[next(iter(table))]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from ctypes import byref
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,12 +15,16 @@ from ._native import CONSTANTS as C
 from .errors import InputError, MudError, fault_of
 from .registry import states
 
+if TYPE_CHECKING:
+    from .material import Material
+
 TANGENTS = {
     None: C["MUD_TANGENT_NONE"],
     "elastic": C["MUD_TANGENT_ELASTIC"],
     "continuum": C["MUD_TANGENT_CONTINUUM"],
     "consistent": C["MUD_TANGENT_CONSISTENT"],
 }
+NEAR = 0.05  # p_atm this close to each other are of one unit: 100 and 101.325 kPa
 _SHAPES = {
     "stress0": (6,),
     "statev0": (len(states),),
@@ -209,15 +214,15 @@ class Points:
         for place, arrays in ((read, given), (written, results)):
             for name, array in arrays.items():
                 if array is not None:
-                    need(array, (n, *_SHAPES.get(name, ())), name)
+                    need(array, (n, *_SHAPES.get(name, ())), name.removesuffix("0"))
                     place[name] = array
-        for place, name, array, size in (
-            (read, "list", listed, None),
-            (read, "material", material, n),
-            (written, "status", answer.status, n),
+        for place, name, array, size, said in (
+            (read, "list", listed, None, "points"),
+            (read, "material", material, n, "material"),
+            (written, "status", answer.status, n, "status"),
         ):
             if array is not None:
-                need(array, (len(array) if size is None else size,), name, np.intc)
+                need(array, (np.size(array) if size is None else size,), said, np.intc)
                 place[name] = array
         for name, (first, _) in _apart(read, written).items():
             setattr(points, name, first)
@@ -250,9 +255,18 @@ class MaterialList(Points):
     >>> ground = MaterialList([Material("toyoura"), Material("karlsruhe")])
     """
 
-    def __init__(self, materials: Sequence[Points]):
+    def __init__(self, materials: Sequence[Material]):
+        materials = list(materials)
         if not materials:
             raise InputError("a list of materials needs one at least")
+        for i, one in enumerate(materials):
+            if not isinstance(one, Points) or isinstance(one, MaterialList):  # Material itself imports this module
+                raise InputError(f"materials[{i}] is {one!r}: each is a mud.Material, such as mud.Material('toyoura')")
+            if not abs(one["p_atm"] / materials[0]["p_atm"] - 1) < NEAR:
+                raise InputError(
+                    f"materials[{i}] has p_atm = {one['p_atm']:g} and the first {materials[0]['p_atm']:g}: the stresses of "
+                    "a list have one unit; Material.converted changes that of a material"
+                )
         self._storage = np.concatenate([one._storage for one in materials])
 
 

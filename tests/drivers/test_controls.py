@@ -181,6 +181,11 @@ def test_air_that_is_dissolved_or_below_vacuum_is_explained():
     done = call("control = 'isotropic', water = 'constant', air = 'constant', p_end = 200.0",
                 initial="p_eff = 100.0, void_ratio = 0.833, suction = 0.5, air_pressure = -101.4")
     check("below vacuum is refused", done.returncode == 2 and "air_pressure" in done.stderr, done.stderr)
+    # The bulk modulus of water, in MPa.
+    done = call("control = 'drained', water = 'constant', air = 'constant', eps_a_end = 0.01",
+                initial="p_eff = 100.0, void_ratio = 0.833, suction = 0.5, k_w = 2200")
+    check("a bulk modulus in MPa is refused", done.returncode == 2 and "k_w = 2200 kPa" in done.stderr
+          and "2.2e6 kPa" in done.stderr, done.stderr)
 
 
 def test_linear_constraints_give_a_named_control():
@@ -335,6 +340,11 @@ def test_a_stress_that_cannot_be_reached_ends_with_code_3():
         done = subprocess.run([*plot, work / "case.csv"], capture_output=True, text=True)
         check("plot_case draws a page", done.returncode == 0 and (work / "case.png").stat().st_size > 20000,
               done.stderr)
+        text = (work / "case.csv").read_text()
+        (work / "mpa.csv").write_text(text.replace("effective [kPa]", "effective [MPa]"))
+        done = subprocess.run([*plot, work / "case.csv", work / "mpa.csv"], capture_output=True, text=True)
+        check("plot_case does not draw two units together", "effective [kPa]" in text and done.returncode == 1
+              and "in kPa, " in done.stderr and "in MPa" in done.stderr, done.stderr)
         done = subprocess.run([*plot, work / "case.nml"], capture_output=True, text=True)
         check("plot_case refuses what is no result", done.returncode ==
               1 and "cannot be read" in done.stderr, done.stderr)

@@ -65,6 +65,14 @@ def test_peaks_and_their_times_are_told_in_the_unit_of_a_reader():
     check("errors are not known", done.stdout.rstrip().endswith(
         f'The errors of these answers are not known; "mud_study accuracy {work}/small.nml" measures them.'),
         done.stdout)
+    (work / "two words").mkdir(exist_ok=True)
+    told = run(written("two words/small", SMALL), work / "small_words").stdout
+    check("a path with a blank is one word of the command", f"accuracy '{work}/two words/small.nml'\" m" in told, told)
+    told = run(work / "two words/small.nml", work / "small_words", "--accuracy", "0.01").stderr
+    check("also where an option is refused", f"accuracy '{work}/two words/small.nml' --accuracy 0.01" in told, told)
+    written("two words/small", SMALL.replace("&scene", "&scene mesh = 'auto'"))
+    told = run(work / "two words/small.nml", work / "small_words").stderr
+    check("and a key", f"accuracy '{work}/two words/small.nml' --accuracy A" in told, told)
     check("memory and times are for --verbose", "MB" not in done.stdout and "factorisation" not in done.stdout)
     check("and are there", all(word in run(work / "small.nml", work / "small", "--verbose").stdout
                                for word in ("MB", "factorisation")))

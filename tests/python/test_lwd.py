@@ -280,6 +280,8 @@ def test_what_cannot_be_computed_is_refused_in_a_sentence():
     for words, said in (
         (("--material", "toyoura", "--void-ratio", "0.8"), "give the suction [kPa] or the depth of the water table"),
         (("--material", "nosand", "--void-ratio", "0.8", "--suction", "9"), "there is no material nosand"),
+        (("--material", "elastic:30000", "--void-ratio", "60"), "it is above 0 and below 10: it is no per cent"),
+        (("--material", "elastic:30", "--void-ratio", "0.8"), "30 MPa are elastic:30000"),
         (("--material", "elastic:x", "--void-ratio", "0.8"), "an elastic layer is elastic:YOUNG"),
         ((*ELASTIC, "--interval", "20"), "at least one and a half times as long"),
         ((*ELASTIC, "--width", "0.5"), "at least six radii"),

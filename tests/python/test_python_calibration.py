@@ -17,7 +17,7 @@ sys.path[:0] = [str(root / "python"), str(root / "common")]
 import mud  # noqa: E402
 import tables  # noqa: E402
 from mud.calibration import Effort, calibrate, make_task, read_table, read_task, simulate, use_of  # noqa: E402
-from mud.calibration import answers_of, misfits_of, write_material, write_report  # noqa: E402
+from mud.calibration import answers_of, misfit_of, misfits_of, write_material, write_report  # noqa: E402
 from mud.calibration.command import main  # noqa: E402
 from mud.calibration.simulation import SETTINGS, earth_pressure, natural  # noqa: E402
 from mud.calibration.variables import VARIABLES, parameters_of, pins_of  # noqa: E402
@@ -607,6 +607,13 @@ def test_m_c_of_the_friction_angle():
         ({"G_max": 1e5}, "G_max_p"),
         ({"phi_c": 0.5777}, "33.1 if it is in radians"),
         ({"phi_c": 331.0}, "soils have 15 to 50"),
+        ({"phi_c": "33.1"}, "phi_c = '33.1' is not one number"),
+        ({"M_c": 33.0}, "M_c = 33 is outside its range (from 0.1 to 2.5"),
+        ({"n_b": math.nan}, "n_b = nan is not one number"),
+        ({"e_c100": 90.0}, "e_c100 = 90 is outside its range (from 0.1 to 5"),
+        ({"G_max": 80.0, "G_max_p": 0.1, "G_max_e": 0.7}, "G_max_p = 0.1 is outside its range (from 1 to 50000"),
+        ({"G_max": 8e4, "G_max_p": 100.0, "G_max_e": 70.0}, "G_max_e = 70 is outside its range"),
+        ({"phi_c": 33.1, "m_c": 1.2}, "M_c is given twice"),
         ({"G_max": 100.0, "G_max_p": 100.0, "G_max_e": 0.8}, "Is it in kPa?"),
         ({"phi_c": 33.1, "M_c": 1.2}, "M_c is given twice, by itself and by phi_c"),
         ({"G_max": 1e5, "G_max_p": 100.0, "G_max_e": 0.8, "G_0": 100.0}, "G_0 is given twice"),
@@ -618,6 +625,9 @@ def test_m_c_of_the_friction_angle():
         ({"only": ["X"]}, "there is no test X"),
         ({"only": "DL"}, "there is no test DL"),  # a word is a name, not a set of letters
         ({"weight": -1.0}, "weight = -1"),
+        ({"weight": "high"}, "weight = 'high'"),
+        ({"weight": 1e300}, "from 0 to 1e+06"),
+        ({"scatter": {"q": 3.0}}, "q = 3.0: give two numbers"),
         ({"scatter": {"q": [0.0, 0.0]}}, "not both of them 0"),
         ({"scatter": {"eps_v": [0.25, 0.0]}}, "fractions, not per cent"),
         ({"scatter": {"q": [3.0, 5.0]}}, "fractions, not per cent"),
@@ -625,7 +635,15 @@ def test_m_c_of_the_friction_angle():
     ):
         told = refusal(lambda: make_task("k", [{**make_tables("true.csv")[0], **table}]))
         check(f"{table} is refused", word in told, told)
+    small = make_task("k", make_tables("true.csv")[0], held_out="D", known={"m_c": 1.2})
+    known = small.base["M_c"] == 1.2 and "M_c" in small.origins
+    check("a name of a parameter in other letters is known", known, small.origins)
+    check("one test is held out by its name", [i.test.name for i in small.items if i.test.held_out] == ["D"])
     for others, word in (({"bounds": {"h_0": (20.0, 8.0)}}, "from 20 to 8"),
+                         ({"bounds": {"h_0": (2.0, math.inf)}}, "from 2 to inf"),
+                         ({"bounds": {"h_0": 2.0}}, "give a lower and an upper bound"),
+                         ({"bounds": {"M_c": (1.0, 1.2)}, "known": {"phi_c": 33.1}}, "no effect, because it is known"),
+                         ({"seed": 1.5}, "seed = 1.5 is not a whole number"),
                          ({"start": sand_in_pa}, "give it in kPa"),
                          ({"held_out": ["X"]}, "there is no test X"),
                          ({"held_out": ["D", "L"]}, "every test is held out")):
@@ -670,6 +688,20 @@ def test_the_page_lists_the_library_of_materials_as_its_files_say():
                 if row[key]:  # recorded with four digits; tolerances of the integration
                     check( f"{name}, {told.name}: {key} is as recorded", abs(
                         float(row[key]) - value) < room, (row[key], value) )
+
+
+def test_the_misfit_of_a_sample_that_liquefies_is_a_number():
+    # q and p of the laboratory come to 0; the model's q is there 1.5 % of the largest: three quarters of the floor.
+    lines = ("eps_a_percent,q_kPa,p_kPa,e_0", "0,0,100,0.95", "0.5,30,70,0.95", "1,20,40,0.95", "15,0,0,0.95")
+    (work / "liquid.csv").write_text("\n".join(lines) + "\n")
+    item = make_task("k", [{"file": work / "liquid.csv", "kind": "undrained"}]).items[0]
+    rows = item.use.rows
+    answer = simulate(truth, item.test, item.use)
+    answer.columns["q"] = item.test["q"][rows] + np.where(item.test["q"][rows] > 0, 0, 0.015 * 30)
+    answer.columns["p"] = item.test["p"][rows] * 1.1
+    told = misfit_of(item, answer)
+    check("q", abs(told.q - 75 / math.sqrt(2)) < 1e-9, told.q)
+    check("p", abs(told.p - 10 / math.sqrt(2)) < 1e-9, told.p)
 
 
 def test_a_task_starts_from_a_material_file_beside_it():

@@ -244,6 +244,21 @@ def test_the_state_begins_with_the_void_ratio_of_the_material():
     )
     other = sand.changed(M_c=1.4)
     ground, kinds = mud.MaterialList([sand, other]), np.array([0, 1, 0, 1], dtype=np.intc)
+    for said, word in {
+        refused(mud.InputError, lambda: sand.changed(M_c=[1.2])): "M_c = [1.2] is not one number",
+        refused(mud.InputError, lambda: sand.converted(-1)): "factor = -1: it is a number above 0",
+        refused(mud.InputError, lambda: sand.converted("MPa")): "factor = 'MPa'",
+        refused(mud.InputError, lambda: sand.saturation(10.0, [0.8, 80.0])): "void_ratio is 80, allowed 0.01 to 5",
+        refused(mud.InputError, lambda: sand.init_batch(stresses.tolist(), points=[0])): "stress must be",
+        refused(mud.InputError, lambda: sand.init_batch(stresses, points=[0])): "points must be",
+        refused(mud.InputError, lambda: mud.plot_test("a")): "test 1 is 'a'",
+    }.items():
+        check(f"{word}: refused by the name and the value that were given", word in said, said)
+    told = refused(mud.InputError, lambda: mud.MaterialList([sand, sand.converted(1e3)]))
+    one_unit = "materials[1] has p_atm = " in told and "one unit" in told
+    check("materials of two units of stress are refused", one_unit, told)
+    told = refused(mud.InputError, lambda: mud.MaterialList([sand, "toyoura"]))
+    check("a name is no material", "materials[1] is 'toyoura'" in told and "mud.Material" in told, told)
     shear, some = np.tile(SHEAR, (4, 1)), np.array([3, 0], dtype=np.intc)
     part = ground.update_batch(begun.stress, begun.statev, shear, points=some, material=kinds)
     whole = other.update_batch(begun.stress, begun.statev, shear)
@@ -550,6 +565,11 @@ def test_is_the_programs_digit_by_digit():
     sheared = mud.element_test(sand, mud.Stage("simple_shear_drained", gamma_end=0.02), p_eff=100.0, void_ratio=0.8)
     labels = [axis.get_xlabel() for axis in mud.plot_test([sheared, sheared]).axes]
     check("simple shear is drawn over shear strain", labels[0] == "shear strain [%]", labels)
+    in_mpa = mud.element_test(sand.converted(1e-3), mud.Stage("drained", eps_a_end=0.02), p_eff=0.1, void_ratio=0.8)
+    labels = [axis.get_ylabel() for axis in mud.plot_test(in_mpa).axes]
+    check("stresses in MPa are drawn as such", labels[0] == "deviator stress q [MPa]", labels)
+    told = refused(mud.InputError, lambda: mud.plot_test({"a": tight, "b": in_mpa}))
+    check("tests of two units are not drawn together", "a in kPa, b in MPa" in told, told)
     titles = [axis.get_title() for axis in mud.plot_test(collapse).axes]
     check("wetting is drawn over suction", "retention" in titles and "wetting and drying" in titles, titles)
     round_off = {**collapse, "q": collapse["q"][0] + 1e-11 * np.arange(len(collapse["q"]))}
@@ -569,6 +589,8 @@ def test_is_the_programs_digit_by_digit():
     check("a column alone is told", "no panel shows" in told, told)
     told = refused(mud.UnknownName, lambda: mud.plot_histories(run, ["top.u_x"]))
     check("a history that is not there is told", "top.u_z" in told, told)
+    check("the name of one history is a list of one", len(mud.plot_histories(run, "top.u_z").axes) == 1)
+    check("no history", "columns is empty" in refused(mud.InputError, lambda: mud.plot_histories(run, [])))
     check("pictures are drawn", (work / "history.png").stat().st_size > 5000
           and (work / "test.png").stat().st_size > 5000)
     if (build / "host/mud_host").exists():

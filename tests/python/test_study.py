@@ -266,6 +266,9 @@ def test_every_end_has_its_sentence_and_its_exit_code():
     done, _, _ = study("effects", text, "refused", "--share", "inf", code=2)
     told = "water_level" in done.stderr and "Traceback" not in done.stderr
     check("effects of a scene that is refused", told, done.stderr)
+    done, _, _ = study("accuracy", text, "refused_too", code=2)
+    tried = done.stdout.count("   run ")
+    check("a scene that is refused is tried with a quarter, half and all of its cells alone", tried == 3, done.stdout)
     text = BLOCK.format("max_iterations = 1 cuts = 0 tolerance = 1e-14")
     text = text.replace("&elastic name = 'soil' young = 1e4 poisson = 0.3 /", "&mud name = 'soil' /")
     done, _, _ = study("effects", text.replace("'static'", "'quasi_static'"), "no_pilot", "--share", "inf")

@@ -74,6 +74,8 @@ def calibrate(
         raise InputError(
             "every test is held out: nothing is left to fit. To compare a material with the tests and fit nothing, evaluate it"
         )
+    if not any(item.weight > 0 for item in task.fitted()):
+        raise InputError("every test that is not held out has the weight 0: nothing is left to fit")
     if not task.variables():
         raise InputError("there is nothing to fit: every parameter that these tests depend on is known")
     with remarks_of_the_library(write is not None):

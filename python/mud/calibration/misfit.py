@@ -156,7 +156,7 @@ class Misfit:
     name: str
     kind: str
     held_out: bool
-    q: float = np.nan  #: rms of q/q_lab - 1 over 1 to 20 % axial strain [%]
+    q: float = np.nan  #: rms of q/q_lab - 1 over 1 to 20 % axial strain [%]; see LIQUID
     p: float = np.nan  #: undrained: rms of p/p_lab - 1 [%]
     eps_v: float = np.nan  #: rms difference over the same rows [percentage points]
     e: float = np.nan  #: largest difference of void ratio [-]
@@ -170,6 +170,7 @@ class Misfit:
     stopped: str = ""
 
 
+LIQUID = 0.02  # share of the largest q or p' of a test by which what is smaller is divided
 RANGE = (0.0099, 0.2501)  # axial strain over which q and eps_v are told
 
 
@@ -181,11 +182,17 @@ def misfit_of(item: Item, answer: Answer, last: float = 0.2001) -> Misfit:
     def rms(values: np.ndarray) -> float:
         return float(np.sqrt(np.mean(np.square(values)))) if len(values) else np.nan
 
+    def relative(quantity: str, used: np.ndarray) -> np.ndarray:
+        """Differences over the laboratory's values. A sample that liquefies comes to 0: differences there are over LIQUID."""
+        lab, model = test[quantity][rows][used], answer.columns[quantity][used]
+        floor = LIQUID * np.max(np.abs(test[quantity][rows]))
+        return np.where(np.abs(lab) > floor, model / np.where(np.abs(lab) > floor, lab, 1) - 1, (model - lab) / floor)
+
     if test.kind in ("drained", "undrained"):
         used = (np.abs(test["eps_a"][rows]) >= RANGE[0]) & (np.abs(test["eps_a"][rows]) <= last)
-        told.q = 100 * rms(answer.columns["q"][used] / test["q"][rows][used] - 1)
+        told.q = 100 * rms(relative("q", used))
         if test.kind == "undrained":
-            told.p = 100 * rms(answer.columns["p"][used] / test["p"][rows][used] - 1)
+            told.p = 100 * rms(relative("p", used))
         elif "eps_v" in item.use.scatter:
             told.eps_v = 100 * rms(answer.columns["eps_v"][used] - test["eps_v"][rows][used])
     elif test.kind in ("oedometer", "isotropic"):

@@ -25,6 +25,7 @@ TABLE_KEYS = ("file", "kind", "first", "last", "scatter", "branch", "weight", "o
 UNIT = (50.0, 200.0)  # [kPa] between them an atmosphere is in kPa
 FRACTIONS = ("eps_v", "e", "S_w", "r_u", "G_ratio", "damping")
 LARGEST_SCATTER = 0.2  # of one of these: more means per cent
+HEAVIEST = 1e6  # weight of a table
 LOOSER = 0.1  # [-] by which an unknown void ratio may lie beyond those of the other tests
 
 
@@ -60,6 +61,10 @@ class Task:
     notes: list[str] = dataclasses.field(default_factory=list)  #: sentences for the report
 
     def __post_init__(self):
+        if isinstance(self.groups, str):
+            self.groups = [self.groups]
+        if not isinstance(self.seed, (int, np.integer)) or self.seed < 0:
+            raise InputError(f"seed = {self.seed!r} is not a whole number from 0 on")
         self.base = dict(in_kpa(Material(self.start)).items())
         values, self.origins = known_parameters(self.known, self.base)
         self.base.update({k: v for k, v in values.items() if k in self.base})
@@ -69,10 +74,15 @@ class Task:
             self.origins["hysteresis"] = f"the suction of {', '.join(turning)} turns"
         self.base.update({UNKNOWN + i.test.name: i.test.e_0 for i in self.items if i.test.unknown_e_0})
         self.fixed_variables = {k: v for k, v in values.items() if k not in self.base}
-        for name, (low, high) in self.bounds.items():
+        for name, pair in self.bounds.items():
             if name not in VARIABLES:
                 raise InputError(f"bounds: {name} is not fitted; there are {', '.join(VARIABLES)}")
-            if not low < high or low <= 0 and VARIABLES[name].log:
+            if np.shape(pair) != (2,):
+                raise InputError(f"bounds: {name} = {pair!r}: give a lower and an upper bound, as (0.5, 20)")
+            low, high = pair
+            if name in self.origins:
+                raise InputError(f"bounds: {name} has no effect, because it is known ({self.origins[name]}); remove one of the two")
+            if not low < high < np.inf or not low > (0 if VARIABLES[name].log else -np.inf):
                 above = ", above zero" * VARIABLES[name].log
                 raise InputError(f"bounds: {name} from {low:g} to {high:g}; a lower and then an upper bound{above}")
 
@@ -121,7 +131,8 @@ def make_task(
     folder : of the files of the tables and, if it is a file, of ``start``.
     """
     items: list[Item] = []
-    for table in tables:
+    held_out = [held_out] if isinstance(held_out, str) else held_out
+    for table in [tables] if isinstance(tables, Mapping) else tables:
         strange = [key for key in table if key not in TABLE_KEYS]
         if strange or not {"file", "kind"} <= set(table):
             raise InputError(
@@ -133,6 +144,9 @@ def make_task(
             if len(tests) != 1:
                 raise InputError(f"{table['file']}: {len(tests)} tests cannot all be called {table['name']}")
             tests[0].name = table["name"]
+        for quantity, pair in table.get("scatter", {}).items():
+            if np.shape(pair) != (2,):
+                raise InputError(f"scatter: {quantity} = {pair!r}: give two numbers, absolute and as a share, as (3, 0.05)")
         scatter = {q: tuple(float(x) for x in s) for q, s in table.get("scatter", {}).items()}
         for quantity in scatter:
             if quantity not in SCATTER[table["kind"]]:
@@ -147,9 +161,9 @@ def make_task(
                     f"scatter: {quantity} = {absolute:g}, {share:g}: shares and deviations of {', '.join(FRACTIONS)} are "
                     f"fractions, not per cent, up to 1 and {LARGEST_SCATTER:g}"
                 )
-        weight = float(table.get("weight", 1.0))
-        if not 0 <= weight < np.inf:
-            raise InputError(f"weight = {weight:g}: it must be a number from 0 on")
+        weight = table.get("weight", 1.0)
+        if isinstance(weight, str) or not 0 <= weight <= HEAVIEST:
+            raise InputError(f"weight = {weight!r}: it must be a number from 0 to {HEAVIEST:g}")
         there = [test.name for test in tests]
         only = table.get("only", there)
         only = [only] if isinstance(only, str) else only
@@ -159,7 +173,7 @@ def make_task(
         for test in tests:
             if test.name in only:
                 use = use_of(test, table.get("first"), table.get("last"), scatter, table.get("branch", "all"))
-                items.append(Item(test, use, weight))
+                items.append(Item(test, use, float(weight)))
     names = [item.test.name for item in items]
     for held in held_out:
         if held not in names:
@@ -191,7 +205,5 @@ def read_task(path: str | os.PathLike) -> Task:
             raise InputError(f"{path}: there is no key {key}; there are {', '.join(KEYS)}")
     if "tables" not in content:
         raise InputError(f"{path}: there is no [[tables]]")
-    if "bounds" in content:
-        content["bounds"] = {name: (float(low), float(high)) for name, (low, high) in content["bounds"].items()}
     content.setdefault("name", path.stem)
     return make_task(tables=content.pop("tables"), folder=path.parent, **content)

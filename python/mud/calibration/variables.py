@@ -190,6 +190,9 @@ def start_of(name: str, base: Mapping[str, float]) -> float:
 
 ANGLES = (15.0, 50.0)  # [degrees] critical friction angles of soils
 STIFFNESS = (5.0, 2000.0)  # G_0 of soils, widely
+# Ranges of what is known and is no parameter of the library: beyond them a value has another unit.
+KNOWN_RANGES = {"G_max_p": (1.0, 5e4), "G_max_e": (0.1, 2.5), "e_c100": (0.1, 5.0), "e_l10": (0.01, 5.0)}
+KNOWN_STATES = {"G_max_p": "mean stress at which G_max is known [kPa]", "G_max_e": "void ratio at which G_max is known"}
 
 
 def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> tuple[dict[str, float], dict[str, str]]:
@@ -199,7 +202,16 @@ def known_parameters(known: Mapping[str, float], base: Mapping[str, float]) -> t
     G_max, G_max_p, G_max_e : small-strain shear modulus [kPa] at a mean stress [kPa] and a void ratio, gives G_0.
     """
     values, origins = {}, {}
-    rest = dict(known)
+    rest = {parameters[name].name if name in parameters else name: value for name, value in known.items()}
+    for name, value in rest.items():
+        if isinstance(value, (str, bytes)) or np.ndim(value) > 0 or value is None or not np.isfinite(value):
+            raise InputError(f"known: {name} = {value!r} is not one number")
+        if name in parameters or name in KNOWN_RANGES:
+            entry = parameters[name] if name in parameters else None
+            low, high = (entry.lower, entry.upper) if entry else KNOWN_RANGES[name]
+            if not low <= value <= high:
+                meaning = entry.meaning if entry else KNOWN_STATES.get(name) or meaning_of(name)
+                raise InputError(f"known: {name} = {value:g} is outside its range (from {low:g} to {high:g}: {meaning})")
     if "phi_c" in rest:
         angle = float(rest.pop("phi_c"))
         if not ANGLES[0] <= angle <= ANGLES[1]:

@@ -16,8 +16,10 @@ DEPTHS = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0)  # of points on the axis
 CELL, GROWTH = 0.3, 0.45  # cell at the plate over its radius; growth of cells over the distance from it [-]
 PENALTY, STIFFER = 1e8, 100.0  # of the contact by default [kN/m3]; over Young's modulus and radius on hard ground [-]
 MOST_PERMEABLE, HEAVIEST_GRAINS = 1e-6, 10.0  # beyond which a number has another unit [m2], [Mg/m3]
+LOOSEST = 10.0  # void ratio, beyond which it is in per cent [-]
 FRAMES = 1e-3  # fields of the last drop are written so often [s]
 BEFORE = 5e-4  # a mass that falls is this near to its buffer when the drop begins [s]
+SOFTEST = 1e3  # Young's modulus of an elastic layer, below it of a wrong unit: plates would sink by more than 20 mm [kPa]
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,11 @@ class Layer:
             young, poisson = -1.0, 0.0
         if not (0 < young < math.inf and 0 <= poisson < 0.5):
             raise InputError(f"{self.material}: an elastic layer is elastic:YOUNG or elastic:YOUNG:POISSON, in kPa")
+        if young < SOFTEST:
+            raise InputError(
+                f"{self.material}: Young's modulus is {young:g} kPa, too soft for any of these devices ({SOFTEST:g} kPa or "
+                f"more); it is given in kPa: {young:g} MPa are elastic:{1000 * young:g}"
+            )
         return young, poisson
 
 
@@ -85,7 +92,7 @@ class Test:
         for what, value, most, unit in (
             ("permeability", self.permeability, MOST_PERMEABLE, " m2, of 10 m/s of water"),
             ("density of the grains", self.rho_s, HEAVIEST_GRAINS, " Mg/m3"),
-            *(("void ratio", layer.void_ratio, math.inf, "") for layer in self.layers),
+            *(("void ratio", layer.void_ratio, LOOSEST, ": it is no per cent") for layer in self.layers),
             *(("thickness of a layer", layer.thickness, math.inf, "") for layer in self.layers[:-1]),
         ):
             if not 0 < value < most:

@@ -246,7 +246,8 @@ class Study:
                 return ""
             except Failed as failure:
                 first = first or failure
-                if failure.code == NO_ANSWER:
+                # A scene that is refused with its own cells is refused at every tolerance.
+                if failure.code == NO_ANSWER or failure.code in REFUSED and fineness == 2:
                     break
         if first.code in REFUSED:
             raise InputError(str(first))

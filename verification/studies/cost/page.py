@@ -139,7 +139,9 @@ def draw(bench, results, plt):
                             markersize=9 if style == "*" else 5)
         axis.set_title(f"{suction} kPa, {mesh} mesh", fontsize=9)
         axis.set_xlabel("CPU time [s]")
-        axis.set_xticks([1, 2, 4, 8, 16, 32], ["1", "2", "4", "8", "16", "32"], minor=False)
+        low, high = axis.get_xlim()
+        ticks = [2.0**i for i in range(-6, 8) if low <= 2.0**i <= high]
+        axis.set_xticks(ticks, [f"{tick:g}" for tick in ticks], minor=False)
         axis.set_xticks([], minor=True)
     for axis in axes[:, 0]:
         axis.set_ylabel("largest error of the answers [%]")
