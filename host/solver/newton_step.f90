@@ -345,7 +345,8 @@ contains
 
    !> Looks for balance along a correction that went too far, by regula falsi (Illinois rule): the residual behind it
    !> points back, with more work than it had at the begin, and the next correction might bring the iterate back to
-   !> where it was. Only where displacements are what has the largest error. log%outcome: as of make_equations.
+   !> where it was. Only where displacements are what has the largest error. log%outcome: as of make_equations. The log
+   !> keeps the whole correction: that a share of it is small says nothing of what is left elsewhere.
    !> docs/theory/host.md section 5.2.
    subroutine search_balance(solution, at)
       type(solution_t), intent(inout) :: solution
@@ -371,7 +372,9 @@ contains
          do i = 1, MOST_SEARCHES
             before = place
             place = low + (high - low)*work_low/(work_low - work_high)
-            call add_correction(solution%dofs, (place - before)*at%dx, new%x, share, largest)
+            ! What is held, or held anew, has its value after the whole correction.
+            call add_correction(solution%dofs, merge(0.0_wp, (place - before)*at%dx, solution%constraint%fixed), &
+                                new%x, share, largest)
             call advance_rates(solution%scheme, old%x, old%v, old%a, new%x, new%v, new%a)
             call make_equations(solution, at)
             if (log%outcome /= CONVERGED) return
@@ -390,8 +393,6 @@ contains
                side = -1
             end if
          end do
-         log%correction = place*log%correction
-         log%changed = place*log%changed
       end associate
    end subroutine search_balance
 
