@@ -360,6 +360,10 @@ contains
       if (solution%log%iterations < 2 .or. .not. begun > 0.0_wp) return
       work = work_along(solution, at)
       if (work > -begun) return
+      ! A contact that holds back has not been solved for yet.
+      if (allocated(solution%system%contacts)) then
+         if (solution%system%contacts%unsettled) return
+      end if
       associate (old => solution%state, new => solution%next, log => solution%log)
          call measure(solution, at%rhs)
          if (log%worst_field > DISPLACEMENTS .or. log%error(log%worst_field) < solution%newton%tolerance) return
