@@ -40,7 +40,8 @@ contains
       logical :: member(size(mesh%x, 2))
       integer :: i
 
-      group = group_of_t(name, [integer ::], reshape([integer ::], [3, 0]), [integer ::])
+      group%name = name
+      allocate (group%elements(0), group%edges(3, 0))
       if (present(elements)) group%elements = elements
       if (present(edges)) group%edges = edges
       member = .false.
