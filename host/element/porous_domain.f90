@@ -33,6 +33,8 @@ module porous_domain
       logical :: ideal_gas = .false.    !< K_a = absolute pressure, rho_a in proportion to it.
       real(wp) :: p_ref = 101.325_wp    !< Absolute pressure where p_a = 0 [kPa].
       real(wp) :: henry = 0.0_wp        !< Volume of air that a volume of water dissolves, at its pressure [-].
+   contains
+      procedure :: air_density
    end type fluids_t
 
    !> Material, fluids and damping of a region.
@@ -138,6 +140,15 @@ module porous_domain
       real(wp) :: n, s        !< Porosity, degree of saturation [-].
    end type means_t
 contains
+   !> Finds the density of air at a pressure [Mg/m3].
+   pure real(wp) function air_density(self, p_a) result(rho)
+      class(fluids_t), intent(in) :: self
+      real(wp), intent(in) :: p_a   !< [kPa]
+
+      rho = self%rho_a
+      if (self%ideal_gas) rho = rho*(1 + p_a/self%p_ref)
+   end function air_density
+
    !> Computes the geometry of every quadrature point; the regions must be known. docs/theory/host.md section 3.1. Fault
    !> EXIT_ELEMENT: an element is inverted, or an axisymmetric mesh has a point at r <= 0.
    subroutine prepare_domain(domain, fault)

@@ -278,7 +278,7 @@ contains
       integer, intent(in) :: element
       real(wp), intent(in) :: ends(2), share   !< [m]; of the column [-].
       type(saturation_t) :: sat
-      real(wp) :: at, step, n, p_a, p_c, p_c_before, rho_a
+      real(wp) :: at, step, n, p_c, p_c_before, rho_a
       integer :: i, slices
 
       weight = 0.0_wp
@@ -295,9 +295,7 @@ contains
             if (region%with_c .and. abs(p_c - p_c_before) > 0.0_wp) sat = region%law%retention(p_c, region%void_ratio)
             p_c_before = p_c
             if (region%with_c .and. initial%saturation > 0.0_wp) sat%s = initial%saturation
-            rho_a = m%fluids%rho_a
-            p_a = water(initial, at) + p_c
-            if (m%fluids%ideal_gas) rho_a = rho_a*(1 + p_a/m%fluids%p_ref)
+            rho_a = m%fluids%air_density(water(initial, at) + p_c)
             if (region%with_w) weight = weight + n*(sat%s*m%fluids%rho_w + (1 - sat%s)*rho_a)
          end do
       end associate

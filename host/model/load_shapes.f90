@@ -80,6 +80,7 @@ contains
       real(wp), intent(inout) :: vector(:)
       type(edge_point_t) :: points(PER_EDGE)
       real(wp) :: along(FIELDS), extent   !< What a value acts on: shares of the extent of the point [m or m2].
+      real(wp) :: value
       integer :: g, i, f
 
       points = points_of_edge(model%domain, edge)
@@ -87,6 +88,7 @@ contains
          associate (n => points(g)%n, m => points(g)%m, tangent => points(g)%tangent, area => points(g)%area, &
                     ring => points(g)%ring)
             along = 0.0_wp
+            value = value_at(load, points(g)%x(2))
             extent = merge(ring, area, load%kind == LOAD_PRESSURE .or. load%falls)
             select case (load%kind)
             case (LOAD_PRESSURE)
@@ -103,8 +105,7 @@ contains
             do i = 1, 3
                do f = 1, FIELDS
                   associate (at => model%dofs%of(f, edge(i)))
-                     if (at > 0) vector(at) = vector(at) + merge(n(i), m(i), f <= DISPLACEMENTS)*along(f)*extent &
-                                                           *value_at(load, points(g)%x(2))
+                     if (at > 0) vector(at) = vector(at) + merge(n(i), m(i), f <= DISPLACEMENTS)*along(f)*extent*value
                   end associate
                end do
             end do

@@ -254,8 +254,7 @@ contains
             ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
             if (.not. run%domain%with_c) cycle
             kappa = law%intrinsic*rel%a/f%eta_a
-            rho_a = f%rho_a
-            if (f%ideal_gas) rho_a = rho_a*(1 + dot_product(sum(middle(:, :n_p), 1), gp%m(:n_p))/f%p_ref)
+            rho_a = f%air_density(dot_product(sum(middle(:, :n_p), 1), gp%m(:n_p)))
             drive = matmul(middle(AT_P_W, :n_p) + middle(AT_P_C, :n_p), gp%dm(:n_p, :)) + [0.0_wp, rho_a*gravity]
             ledger%seepage = ledger%seepage + run%scheme%dt*gp%weight*kappa*dot_product(drive, drive)
          end associate

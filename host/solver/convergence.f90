@@ -15,7 +15,7 @@ module convergence
    use unknown_fields, only: FIELDS, DISPLACEMENTS, AT_U_Z, AT_P_W, AT_P_C
    implicit none (type, external)
    private
-   public :: measure, good_enough, field_scales, water_of, water_scale, body_scale, is_body, rounding_in
+   public :: measure, is_free, good_enough, field_scales, water_of, water_scale, body_scale, is_body, rounding_in
    public :: note_stagnation, measure_in, linear_tolerance, MOST_IN_VAIN, RATE_SHARE
 
    real(wp), parameter :: HISTORY_SHARE = 1.0e-6_wp   !< Share of the largest scale so far that still counts.
@@ -217,22 +217,30 @@ contains
       end associate
    end function body_scale
 
+   !> Unknowns whose balance is solved: what holds a prescribed value, or air pressure, is no residual.
+   pure function is_free(s) result(free)
+      class(solution_t), intent(in) :: s
+      logical :: free(s%dofs%n)
+
+      associate (dofs => s%dofs, constraint => s%constraint)
+         free = .not. (constraint%fixed .or. (dofs%field == AT_P_C .and. constraint%air(dofs%node)))
+      end associate
+   end function is_free
+
    !> Norms over the unknowns that are free, displacements together: a component without forces is no measure of its
    !> own.
    pure function norms_of(s, values) result(norms)
       class(solution_t), intent(in) :: s
       real(wp), intent(in) :: values(:)   !< (unknowns)
       real(wp) :: norms(FIELDS)
+      logical :: free(s%dofs%n)
       integer :: i, f
 
       norms = 0.0_wp
+      free = is_free(s)
       do i = 1, s%dofs%n
          f = s%dofs%field(i)
-         if (s%constraint%fixed(i)) cycle
-         if (f == AT_P_C) then
-            if (s%constraint%air(s%dofs%node(i))) cycle
-         end if
-         norms(f) = norms(f) + values(i)**2
+         if (free(i)) norms(f) = norms(f) + values(i)**2
       end do
       norms(:DISPLACEMENTS) = sum(norms(:DISPLACEMENTS))
       norms = sqrt(norms)

@@ -6,7 +6,8 @@
 module newton_step
    use kinds, only: wp
    use wall_clock, only: clock, add_elapsed
-   use convergence, only: measure, good_enough, note_stagnation, linear_tolerance, rounding_in, water_of, MOST_IN_VAIN
+   use convergence, only: measure, is_free, good_enough, note_stagnation, linear_tolerance, rounding_in, water_of, &
+                          MOST_IN_VAIN
    use degrees_of_freedom, only: dofs_t, at_nodes, of_unknowns
    use equation_assembly, only: assemble, follow_slopes_first
    use tangent_fallback, only: NO_FALLBACK, SOFT_POINTS
@@ -260,16 +261,6 @@ contains
          if (solution%log%iterations == 0) at%norm_0 = norm2(pack(at%rhs, is_free(solution)))
       end associate
    end subroutine note_equations
-
-   !> Unknowns whose balance is solved: what holds a prescribed value, or air pressure, is no residual.
-   pure function is_free(solution) result(free)
-      class(solution_t), intent(in) :: solution
-      logical :: free(solution%dofs%n)
-
-      associate (dofs => solution%dofs, constraint => solution%constraint)
-         free = .not. (constraint%fixed .or. (dofs%field == AT_P_C .and. constraint%air(dofs%node)))
-      end associate
-   end function is_free
 
    !> Judges an iterate by the error of its residual: the step is done, its equations are made again with stresses as
    !> closely integrated as it asks for, it goes on, or log%outcome is NOT_CONVERGED.

@@ -20,7 +20,7 @@ from .registry import parameters, states
 _TENSION = ", tension: tension is positive here"
 _SUCTION = states["suction"].index
 _STATE, _SLOPES = slice(6, 6 + len(states)), slice(6 + len(states), None)
-_E_LOWER, _E_UPPER = 0.01, 5.0  # void ratios that the library integrates at [-]
+VOID_RATIOS = 0.01, 5.0  # void ratios that the library integrates at [-]
 _BLOCKS = 50  # doubles of mud_blocks: 36, 6, 6, 1, 1
 _REPORT = ctypes.sizeof(_native.Report)
 
@@ -341,9 +341,10 @@ class Material(Points, Mapping):
     def saturation(self, suction: np.ndarray | float, void_ratio: np.ndarray | float) -> np.ndarray:
         """Degree of saturation [-] at suctions [kPa] and void ratios [-]; the shapes are broadcast together."""
         suctions, ratios = np.broadcast_arrays(np.asarray(suction, dtype=float), np.asarray(void_ratio, dtype=float))
-        wrong = ratios[~((ratios >= _E_LOWER) & (ratios <= _E_UPPER))]
+        lower, upper = VOID_RATIOS
+        wrong = ratios[~((ratios >= lower) & (ratios <= upper))]
         if wrong.size:
-            raise InputError(f"void_ratio is {wrong[0]:g}, allowed {_E_LOWER:g} to {_E_UPPER:g}; it is no per cent")
+            raise InputError(f"void_ratio is {wrong[0]:g}, allowed {lower:g} to {upper:g}; it is no per cent")
         answer, value = np.empty(suctions.shape), c_double()
         for place in np.ndindex(suctions.shape):
             code = _native.mud.mud_saturation(

@@ -16,6 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import InputError
+from ..material import VOID_RATIOS
 from .effective import SHEAR, effective_stresses, pore_pressure, usual_p_and_q
 from .heads import STRESSES, UNITS, Head
 from .sheets import Sheet, read_sheets
@@ -59,8 +60,8 @@ LEADS = {"drained": ("eps_a", False), "undrained": ("eps_a", False), "oedometer"
 LEADS |= {"isotropic": ("p", True), "retention": ("suction", True), "cyclic": ("cycle", False)}
 # What a quantity of soil can be, measured, and what a number below or above may mean.
 RANGES = (
-    ("e", 0.01, 5.0, "", " (a void ratio in per cent?)"),
-    ("e_0", 0.01, 5.0, "", " (a void ratio in per cent?)"),
+    ("e", *VOID_RATIOS, "", " (a void ratio in per cent?)"),
+    ("e_0", *VOID_RATIOS, "", " (a void ratio in per cent?)"),
     ("S_w", -0.05, 1.05, "", " (S_w in per cent? Call the column S_w_percent)"),
     ("suction", 0.0, 1e7, " (a matric potential? Suction is positive)", " (in Pa? Call the column suction_Pa)"),
     ("r_u", -10.0, 2.0, "", " (r_u in per cent? Call the column r_u_percent)"),

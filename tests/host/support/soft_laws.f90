@@ -14,7 +14,6 @@ module soft_laws
    public :: soft_t, soften, bend, BEND_AT, BEHIND_IT
 
    real(wp), parameter :: LEFT = 0.9_wp   !< Share of the elastic change of stress in a long increment [-].
-
    real(wp), parameter :: BEND_AT = 5.0e-4_wp    !< Compression along z at the kink [-].
    real(wp), parameter :: BEHIND_IT = 1.0e3_wp   !< Stress behind the kink over the root of the strain from there [kPa].
 
@@ -42,19 +41,12 @@ contains
       integer, intent(in), optional :: most_points
       type(soft_t) :: soft
 
-      associate (one => model%domain%regions(region))
-         select type (law => one%law)
-         type is (elastic_t)
-            soft%elastic_t = law
-         class default
-            error stop 'only an elastic law can be made soft'
-         end select
-         soft%limit = limit
-         soft%knows_elastic = knows_elastic
-         if (present(most_points)) soft%most_points = most_points
-         deallocate (one%law)
-         allocate (one%law, source=soft)
-      end associate
+      soft%elastic_t = elastic_law(model, region)
+      soft%limit = limit
+      soft%knows_elastic = knows_elastic
+      if (present(most_points)) soft%most_points = most_points
+      deallocate (model%domain%regions(region)%law)
+      allocate (model%domain%regions(region)%law, source=soft)
    end subroutine soften
 
    !> Gives the elastic law of a region a kink.
@@ -63,17 +55,23 @@ contains
       integer, intent(in) :: region
       type(bent_t) :: bent
 
-      associate (one => model%domain%regions(region))
-         select type (law => one%law)
-         type is (elastic_t)
-            bent%elastic_t = law
-         class default
-            error stop 'only an elastic law can have a kink'
-         end select
-         deallocate (one%law)
-         allocate (one%law, source=bent)
-      end associate
+      bent%elastic_t = elastic_law(model, region)
+      deallocate (model%domain%regions(region)%law)
+      allocate (model%domain%regions(region)%law, source=bent)
    end subroutine bend
+
+   function elastic_law(model, region) result(elastic)
+      type(model_t), intent(in) :: model
+      integer, intent(in) :: region
+      type(elastic_t) :: elastic
+
+      select type (law => model%domain%regions(region)%law)
+      type is (elastic_t)
+         elastic = law
+      class default
+         error stop 'only an elastic law can be changed'
+      end select
+   end function elastic_law
 
    subroutine bent_update(self, n, stress, state, strain, suction, d_suction, with_tangent, response, new_state, &
                           report)
